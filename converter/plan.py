@@ -18,9 +18,9 @@ import numpy as np
 from converter.formats import scene_yaml
 from converter.scene import Scene
 from converter.shape import FloatArray, frozen_array
-from converter.validation import Document, validated
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
+from pcg.validation import Document, validated
 
 
 class Status(StrEnum):
