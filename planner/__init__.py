@@ -1,1 +1,10 @@
-"""."""
+"""From a scene to a plan: forward search over pick-and-place subproblems, and the independent verification.
+
+    from planner import Settings, solve
+    result = solve(scene, Settings(method="Rnd+FPR"), numpy.random.default_rng(0))
+"""
+
+from planner.result import PlanResult
+from planner.settings import METHODS, PRESETS, Settings
+
+__all__ = ["METHODS", "PRESETS", "PlanResult", "Settings"]

@@ -1,0 +1,74 @@
+"""Every parameter of the search in one place, with the value chosen and why."""
+
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal, Self
+
+from pcg.errors import InputError
+
+METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R")
+"""Names of the methods; letters after the plus: F filter, P prioritised selection, R rejection."""
+
+PRESETS = ("fast", "faithful")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Parameters of Algorithm 1 and of what it calls.
+
+    Counts, not seconds, bound the work, so that a seed fixes the plan; `time_limit` is only a guard.
+
+    Attributes:
+        method: One of `METHODS`.
+        preset: `faithful` (RRT-Connect and nonlinear programs, as published) or `fast` (exact geometry).
+        time_limit: Wall time after which the search gives up [s].
+        candidates: Free positions drawn for an object before the filter.
+        keep_share: Share of the candidates that passes the filter.
+        subgoals_per_object: Positions drawn from those that passed; the trivial subgoal comes on top.
+        grasp_starts: Starts on the contact curve for one switch-configuration problem.
+        reach_iterations: Iterations of RRT-Connect for the question whether an object can be reached.
+        motion_iterations: Iterations of RRT-Connect for a motion between switch configurations.
+        equal_configurations: Configurations with equal discretised object positions that rejection lets pass.
+        rejection_cell: Edge of the cells in which rejection compares object positions [m].
+        expansions: How often one configuration may be expanded.
+        max_expansions: Expansions in all after which the search gives up.
+    """
+
+    method: str = "Rnd+FPR"
+    preset: Literal["fast", "faithful"] = "fast"
+    time_limit: float = 60.0
+    candidates: int = 100
+    keep_share: float = 0.2
+    subgoals_per_object: int = 5
+    grasp_starts: int = 12
+    reach_iterations: int = 20_000
+    motion_iterations: int = 20_000
+    equal_configurations: int = 2
+    rejection_cell: float = 0.1
+    expansions: int = 2
+    max_expansions: int = 100_000
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise InputError("method", f"found {self.method!r}, allowed are {', '.join(METHODS)}")
+        if self.preset not in PRESETS:
+            raise InputError("settings", f"found {self.preset!r}, allowed are {', '.join(PRESETS)}")
+        if not self.time_limit > 0:
+            raise InputError("time limit", f"found {self.time_limit}, must be > 0 seconds")
+
+    @property
+    def generator(self) -> str:
+        """Name of the subgoal generator."""
+        return self.method.split("+")[0]
+
+    @property
+    def letters(self) -> str:
+        """Which of filter (F), prioritised selection (P) and rejection (R) are on."""
+        return self.method.partition("+")[2]
+
+    def with_(self, **changes: Any) -> Self:
+        """A copy with some values changed."""
+        return replace(self, **changes)
+
+    def as_document(self) -> dict[str, Any]:
+        """Plain values, for plan files and trial records."""
+        return asdict(self)
