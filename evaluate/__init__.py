@@ -1,1 +1,1 @@
-"""."""
+"""Planners over scenes and seeds: trials, studies, tables and the command line."""

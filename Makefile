@@ -1,0 +1,41 @@
+# A fresh machine needs python3 (3.11 or later), make and git; everything else goes into .venv.
+
+PYTHON ?= python3
+BIN := .venv/bin
+INSTALLED := .venv/.installed
+COMPILE := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-header --group dev
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lock
+
+help:
+	@echo "make setup  install the locked dependencies and manipuzzle itself into .venv"
+	@echo "make demo   generate, convert, check, solve, verify and draw levels and puzzles into out/"
+	@echo "make test   lint, types and tests: what CI runs"
+	@echo "make lock   resolve the dependencies anew into the two lock files"
+
+setup: $(INSTALLED)
+
+$(BIN)/uv:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or later is needed")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet uv
+
+# The stamp makes a second `make` start at once; a changed lock or project file installs again.
+$(INSTALLED): pyproject.toml requirements.lock | $(BIN)/uv
+	$(BIN)/uv pip sync --quiet --python $(BIN)/python --require-hashes requirements.lock
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --editable .
+	touch $@
+
+demo: setup
+	$(BIN)/python -m evaluate.demo --out out
+
+test: setup
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python -m pytest -n 2
+
+lock: $(BIN)/uv
+	$(COMPILE) --output-file requirements.lock pyproject.toml
+	$(COMPILE) --extra rl --output-file requirements-rl.lock pyproject.toml

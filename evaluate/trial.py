@@ -1,0 +1,76 @@
+"""One trial: one planner on one scene with one seed, and the independent verification of its plan."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from converter.plan import Plan
+from converter.scene import Scene
+from planner import Settings, solve
+from planner.verify import Violation, verify
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What to do; the same trial gives the same plan unless a time limit cuts it short.
+
+    Attributes:
+        scene: The scene to solve.
+        settings: Every setting of the planner, among them the method.
+        seed: Seed of the trial's only random generator, >= 0.
+    """
+
+    scene: Scene
+    settings: Settings
+    seed: int
+
+    @property
+    def settings_hash(self) -> str:
+        """Sixteen hexadecimal digits over every setting."""
+        return _digest(self.settings.as_document())
+
+    @property
+    def key(self) -> str:
+        """Identity: geometry and name of the scene, method, seed and settings."""
+        scene = self.scene
+        return _digest([scene.geometry_hash, scene.name, self.settings.method, self.seed, self.settings_hash])
+
+
+@dataclass(frozen=True, eq=False)
+class TrialOutcome:
+    """What came of a trial.
+
+    Attributes:
+        plan: The plan, or how the planner failed.
+        violations: What the verification found; None if there was no plan to verify.
+    """
+
+    plan: Plan
+    violations: tuple[Violation, ...] | None
+
+    @property
+    def verified(self) -> bool | None:
+        """Whether the plan passed verification; None without a plan."""
+        return None if self.violations is None else not self.violations
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is a plan that passed verification."""
+        return self.verified is True
+
+
+def run_trial(scene: Scene, settings: Settings, seed: int) -> TrialOutcome:
+    """Plans and verifies.
+
+    Raises:
+        InputError: the initial configuration is invalid (a body inside another one).
+    """
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+    plan = solve(scene, settings, rng).to_plan(scene, settings, seed)
+    return TrialOutcome(plan, tuple(verify(scene, plan)) if plan.solved else None)
+
+
+def _digest(document: object) -> str:
+    return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
