@@ -6,6 +6,7 @@ below: n vertices of a polygon. All values are immutable; `dataclasses.replace` 
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -67,6 +68,18 @@ class Body:
         """Height interval [m], world."""
         z = float(self.position[2])
         return z - self.height / 2, z + self.height / 2
+
+    @cached_property
+    def geometry(self) -> str:
+        """Position, height and outline to 1 nm as text: equal for bodies that fill the same space.
+
+        A convex polygon is the set of its vertices, so neither their order nor that of the parts counts.
+        """
+        parts = [
+            [_rounded(part.edge_radius), sorted(_rounded(core))]
+            for core, part in zip(self.cores, self.parts, strict=True)
+        ]
+        return json.dumps([_rounded(self.position), _rounded(self.height), sorted(parts)])
 
     def at(self, xy: FloatArray) -> Self:
         """The body moved to `xy` (2,) [m], world."""
@@ -154,8 +167,8 @@ class Scene:
             raise ValueError(f"bounds {self.bounds.tolist()}: the lower corner must be below the upper one")
         if not (np.isfinite(self.tolerance) and self.tolerance >= 0):
             raise ValueError(f"tolerance {self.tolerance} must be >= 0")
-        names = [body.name for body in (*self.walls, *self.objects)]
-        if repeated := sorted({name for name in names if names.count(name) > 1}):
+        counts = Counter(body.name for body in (*self.walls, *self.objects))
+        if repeated := sorted(name for name, count in counts.items() if count > 1):
             raise ValueError(f"names must be unique, found {', '.join(repeated)} twice")
         if self.goal.object not in self.object_names:
             raise ValueError(f"goal.object {self.goal.object!r} is not an object; there are {self.object_names}")
@@ -188,8 +201,8 @@ class Scene:
             "bounds": _rounded(self.bounds),
             "tolerance": _rounded(self.tolerance),
             "agent": [_rounded(self.agent.position), _rounded(self.agent.radius), _rounded(self.agent.height)],
-            "walls": sorted(_body_document(wall) for wall in self.walls),
-            "objects": [[body.name, _body_document(body)] for body in self.objects],
+            "walls": sorted(wall.geometry for wall in self.walls),
+            "objects": [[body.name, body.geometry] for body in self.objects],
             "goal": [self.goal.object, _rounded(self.goal.position), _rounded(self.goal.size)],
         }
         return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
@@ -198,10 +211,3 @@ class Scene:
 def _rounded(values: float | FloatArray) -> Any:
     # Adding 0.0 turns -0.0 into 0.0, which would otherwise be another text.
     return (np.round(np.asarray(values, dtype=np.float64), 9) + 0.0).tolist()
-
-
-def _body_document(body: Body) -> str:
-    parts = [
-        [_rounded(core), _rounded(part.edge_radius)] for core, part in zip(body.cores, body.parts, strict=True)
-    ]
-    return json.dumps([_rounded(body.position), _rounded(body.height), parts])

@@ -31,7 +31,7 @@ def validated(model: type[Model], data: Any, where: str) -> Model:
         place = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in first["loc"]).lstrip(".")
         found = "" if first["type"] == "missing" else f" (found {_shortened(first['input'])})"
         more = f"; {count - 1} more" if count > 1 else ""
-        problem = f"{place or 'document'}: {first['msg']}{found}{more}"
+        problem = f"{place or 'document'}: {first['msg'].removeprefix('Value error, ')}{found}{more}"
         raise InputError(where, problem) from None
 
 
