@@ -1,0 +1,234 @@
+"""Scenes from the `.g` files of the authors' engine `rai` [L]: which frame is what.
+
+- `floor` bounds the room; the top of its box is z = 0.
+- A frame with `joint:transXY` is the agent, one with `joint:rigid` a movable object; shapes below such a frame
+  belong to it. Other shapes that collide (`contact` given and not 0) are walls.
+- `goal` is the goal rectangle; it and its markers never collide. The goal-object is `obj`, or the only object.
+- `ssBox size [x y z r]` has outer size x, y, z and edges rounded by r; `ssCylinder size [h r s]` has height h and
+  radius r.
+
+[L] Levit, Ortiz-Haro, Toussaint: Solving Sequential Manipulation Puzzles by Finding Easier Subproblems, ICRA 2024.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from converter.formats.body_document import MAX_LENGTH
+from converter.formats.rai_pose import IDENTITY, Pose, frame_pose
+from converter.formats.rai_text import Frame, read_frames
+from converter.scene import Agent, Body, Goal, Scene
+from converter.shape import FloatArray, Part, rotation
+from pcg.errors import InputError
+
+TOLERANCE = 1e-3
+"""Collision tolerance of the authors' engine when the scenes were published [m]."""
+
+_NEVER_COLLIDING = frozenset({"floor", "goal", "goal_visible", "goalLarge", "goalSmall", "sub-goal1"})
+_SIZE_COUNTS = {"ssBox": 4, "box": 3, "ssCylinder": 3, "cylinder": 2}
+_ALIGNED = 1e-9
+_DECIMALS = 12
+"""Sums of decimal numbers are rounded to so many places, which removes the noise of floating-point arithmetic."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """Where a frame is in the file's world, and the nearest frame with a joint, itself or above it."""
+
+    pose: Pose
+    mover: Frame | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Solid:
+    """An upright shape in the scene's coordinates: footprint about the origin, and height [m]."""
+
+    frame: Frame
+    placed: _Placed
+    part: Part
+    height: float
+
+    @property
+    def bottom_top(self) -> tuple[float, float]:
+        z = float(self.placed.pose.translation[2])
+        return z - self.height / 2, z + self.height / 2
+
+
+def read_rai_g(path: Path) -> Scene:
+    """Reads a `.g` file, with the geometry preset `published`.
+
+    Raises:
+        InputError: naming file and line.
+    """
+    tree = _Tree(read_frames(path), str(path))
+    tree.stand_on("floor")
+    solids = [tree.solid(frame) for frame in tree.frames.values() if tree.collides(frame)]
+    by_joint: dict[str, list[_Solid]] = {"": [], "rigid": [], "transXY": []}
+    for solid in solids:
+        by_joint[_joint(solid.placed.mover)].append(solid)
+    objects = _objects(by_joint["rigid"], tree)
+    return Scene(
+        name=path.stem,
+        bounds=_bounds(tree.solid(tree.frame("floor"))),
+        tolerance=TOLERANCE,
+        agent=_agent(by_joint["transXY"], str(path)),
+        walls=tuple(_body(solid.frame, solid.placed.pose, [solid]) for solid in by_joint[""]),
+        objects=objects,
+        goal=_goal(tree.solid(tree.frame("goal")), [body.name for body in objects]),
+        preset="published",
+        source={"file": path.name, "format": "rai"},
+    )
+
+
+class _Tree:
+    """The frames of a file and where they are."""
+
+    def __init__(self, frames: dict[str, Frame], file: str) -> None:
+        self.frames = frames
+        self._file = file
+        self._placed: dict[str, _Placed] = {}
+        self._ground = np.zeros(3)
+
+    def stand_on(self, name: str) -> None:
+        """Makes the top of the frame's shape the height 0 of the scene."""
+        top = self.solid(self.frame(name)).bottom_top[1]
+        self._ground = np.array([0, 0, top])
+
+    def frame(self, name: str) -> Frame:
+        if name not in self.frames:
+            raise InputError(self._file, f"no frame called {name!r}")
+        return self.frames[name]
+
+    def placed(self, frame: Frame) -> _Placed:
+        """Pose in the scene's coordinates and mover of a frame."""
+        chain: list[Frame] = []
+        step: Frame | None = frame
+        while step is not None and step.name not in self._placed:
+            if len(chain) > len(self.frames):
+                raise InputError(frame.where, f"{frame.name}: its parents form a circle")
+            chain.append(step)
+            step = self._parent(step)
+        for step in reversed(chain):
+            outer = self._placed[step.parent] if step.parent else _Placed(IDENTITY, None)
+            mover = step if step.attributes.get("joint", "none") != "none" else outer.mover
+            self._placed[step.name] = _Placed(outer.pose @ frame_pose(step), mover)
+        found = self._placed[frame.name]
+        translation = np.round(found.pose.translation - self._ground, _DECIMALS)
+        if np.abs(translation).max() > MAX_LENGTH:
+            raise InputError(frame.where, f"{frame.name}: farther than {MAX_LENGTH:g} m from the origin")
+        return _Placed(Pose(translation, found.pose.yaw), found.mover)
+
+    def _parent(self, frame: Frame) -> Frame | None:
+        if frame.parent is None:
+            return None
+        if frame.parent not in self.frames:
+            raise InputError(frame.where, f"{frame.name}: no frame called {frame.parent!r}, its parent")
+        return self.frames[frame.parent]
+
+    def collides(self, frame: Frame) -> bool:
+        """Whether the frame has a shape that is part of a wall, an object or the agent."""
+        if frame.name in _NEVER_COLLIDING or _shape(frame) in ("none", "camera", "marker"):
+            return False
+        has_joint = frame.attributes.get("joint", "none") != "none" and "size" in frame.attributes
+        return has_joint or frame.attributes.get("contact", (0.0,)) not in ((0.0,), "false")
+
+    def solid(self, frame: Frame) -> _Solid:
+        """The shape of a frame."""
+        shape = _shape(frame)
+        if shape not in _SIZE_COUNTS:
+            where = frame.places.get("shape", frame.places.get("type", frame.where))
+            raise InputError(where, f"{frame.name}: shape {shape!r}; allowed are {', '.join(_SIZE_COUNTS)}")
+        size = frame.numbers("size", (_SIZE_COUNTS[shape],))
+        if min(size) < 0 or max(size) > MAX_LENGTH:
+            raise InputError(frame.places["size"], f"{frame.name}: every size must be within 0..{MAX_LENGTH:g}")
+        try:
+            if "ylinder" in shape:
+                return _Solid(frame, self.placed(frame), Part(np.zeros((1, 2)), size[1]), size[0])
+            edge_radius = size[3] if shape == "ssBox" else 0.0
+            return _Solid(frame, self.placed(frame), Part.box(size[:2], edge_radius), size[2])
+        except InputError:
+            raise
+        except ValueError as error:
+            raise InputError(frame.places["size"], f"{frame.name}: {error}") from None
+
+
+def _shape(frame: Frame) -> str:
+    shape = frame.attributes.get(
+        "shape", frame.attributes.get("type", "none" if "size" not in frame.attributes else "")
+    )
+    return shape if isinstance(shape, str) else " ".join(f"{number:g}" for number in shape)
+
+
+def _joint(mover: Frame | None) -> str:
+    if mover is None:
+        return ""
+    joint = mover.attributes["joint"]
+    if joint not in ("rigid", "transXY"):
+        raise InputError(mover.places["joint"], f"{mover.name}: joint {joint!r}; allowed are rigid and transXY")
+    return str(joint)
+
+
+def _bounds(floor: _Solid) -> FloatArray:
+    return np.round(floor.placed.pose.translation[:2] + np.outer([-0.5, 0.5], _aligned_size(floor)), _DECIMALS)
+
+
+def _agent(solids: Sequence[_Solid], file: str) -> Agent:
+    if len(solids) != 1:
+        raise InputError(file, f"one shape below a frame with joint:transXY wanted (the agent), found {len(solids)}")
+    (solid,) = solids
+    if len(solid.part.core) > 1:
+        raise InputError(solid.frame.where, f"{solid.frame.name}: the agent must be an upright cylinder")
+    # The agent is taken to reach down to the floor.
+    height = round(solid.bottom_top[1], _DECIMALS)
+    if height <= 0:
+        raise InputError(solid.frame.where, f"{solid.frame.name}: the agent is below the floor")
+    return Agent(solid.placed.pose.translation[:2], solid.part.edge_radius, height)
+
+
+def _objects(solids: Sequence[_Solid], tree: _Tree) -> tuple[Body, ...]:
+    by_mover: dict[str, list[_Solid]] = {}
+    for solid in solids:
+        if solid.placed.mover is not None:
+            by_mover.setdefault(solid.placed.mover.name, []).append(solid)
+    return tuple(_body(tree.frame(name), tree.placed(tree.frame(name)).pose, parts) for name, parts in by_mover.items())
+
+
+def _body(frame: Frame, pose: Pose, solids: Sequence[_Solid]) -> Body:
+    first = solids[0]
+    for solid in solids:
+        if not np.allclose(solid.bottom_top, first.bottom_top, rtol=0, atol=_ALIGNED):
+            raise InputError(solid.frame.where, f"{solid.frame.name}: the parts of {frame.name} differ in height or z")
+    position = np.array([*pose.translation[:2], first.placed.pose.translation[2]])
+    parts = tuple(_moved(solid.part, solid.placed.pose.relative_to(pose)) for solid in solids)
+    return Body(frame.name, position, first.height, parts, pose.yaw, _color(first.frame))
+
+
+def _moved(part: Part, pose: Pose) -> Part:
+    if pose.yaw == 0 and not pose.translation[:2].any():
+        return part
+    return Part(np.round(part.core @ rotation(pose.yaw) + pose.translation[:2], _DECIMALS), part.edge_radius)
+
+
+def _color(frame: Frame) -> tuple[float, float, float] | None:
+    color = frame.attributes.get("color")
+    if color is None or isinstance(color, str) or len(color) not in (3, 4):
+        return None
+    red, green, blue = (min(max(share, 0.0), 1.0) for share in color[:3])
+    return red, green, blue
+
+
+def _goal(solid: _Solid, objects: Sequence[str]) -> Goal:
+    name = "obj" if "obj" in objects or len(objects) != 1 else objects[0]
+    if name not in objects:
+        raise InputError(solid.frame.where, f"no goal-object: none of the objects ({', '.join(objects)}) is called obj")
+    return Goal(name, solid.placed.pose.translation[:2], _aligned_size(solid))
+
+
+def _aligned_size(solid: _Solid) -> FloatArray:
+    """Outer size (2,) [m] of a box that must be aligned with the axes."""
+    size = solid.part.box_size
+    if size is None or abs(solid.placed.pose.yaw) > _ALIGNED:
+        raise InputError(solid.frame.where, f"{solid.frame.name}: must be a box that is aligned with the axes")
+    return np.round(np.array(size), _DECIMALS)
