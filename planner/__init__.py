@@ -5,6 +5,7 @@
 """
 
 from planner.result import PlanResult
+from planner.search import solve
 from planner.settings import METHODS, PRESETS, Settings
 
-__all__ = ["METHODS", "PRESETS", "PlanResult", "Settings"]
+__all__ = ["METHODS", "PRESETS", "PlanResult", "Settings", "solve"]

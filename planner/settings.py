@@ -25,6 +25,7 @@ class Settings:
         keep_share: Share of the candidates that passes the filter.
         subgoals_per_object: Positions drawn from those that passed; the trivial subgoal comes on top.
         grasp_starts: Starts on the contact curve for one switch-configuration problem.
+        placement_samples: Placements tried in a region, its centre first.
         reach_iterations: Iterations of RRT-Connect for the question whether an object can be reached.
         motion_iterations: Iterations of RRT-Connect for a motion between switch configurations.
         equal_configurations: Configurations with equal discretised object positions that rejection lets pass.
@@ -40,6 +41,7 @@ class Settings:
     keep_share: float = 0.2
     subgoals_per_object: int = 5
     grasp_starts: int = 12
+    placement_samples: int = 8
     reach_iterations: int = 20_000
     motion_iterations: int = 20_000
     equal_configurations: int = 2

@@ -1,0 +1,108 @@
+"""Pick-and-place subproblems by exact geometry: grasps on the contact curve, shortest paths by visibility graphs."""
+
+from collections import Counter
+from functools import cached_property
+
+import numpy as np
+
+from converter.shape import FloatArray
+from planner.contact_curve import ContactCurve
+from planner.kernel import BoolArray
+from planner.pick_place import PickPlace, Region
+from planner.problem import Configuration, Problem
+from planner.settings import Settings
+from planner.visibility import ShortestPathTree
+
+
+class _Grasp:
+    """One way to hold one object, and where that leads.
+
+    Attributes:
+        offset: (2,) [m] agent centre minus object position.
+        start: (2,) [m] agent centre at the pick.
+    """
+
+    def __init__(self, problem: Problem, configuration: Configuration, index: int, offset: FloatArray) -> None:
+        self.offset = offset
+        self.start = configuration.objects[index] + offset
+        self._space = problem.carry_space(configuration, index, offset)
+
+    @cached_property
+    def _tree(self) -> ShortestPathTree:
+        return ShortestPathTree(self._space, self.start)
+
+    def leads_to(self, positions: FloatArray) -> BoolArray:
+        """For each of `positions` (n, 2) whether the object can be carried there in this grasp."""
+        ends = positions + self.offset
+        possible = self._space.points_free(ends)
+        if possible.any():
+            possible[possible] = self._tree.reaches(ends[possible])
+        return possible
+
+    def carry_to(self, position: FloatArray) -> FloatArray | None:
+        """The shortest path (n, 2) of the agent that brings the object to `position` (2,)."""
+        return self._tree.path_to(position + self.offset)
+
+
+class ExactPickPlace:
+    """Subproblems of one configuration; what one query computes, later ones reuse."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        curves: list[ContactCurve],
+        configuration: Configuration,
+        settings: Settings,
+        rng: np.random.Generator,
+        counters: Counter[str],
+    ) -> None:
+        self._problem = problem
+        self._curves = curves
+        self._configuration = configuration
+        self._settings = settings
+        self._rng = rng
+        self._counters = counters
+        self._from_agent = ShortestPathTree(problem.agent_space(configuration), configuration.agent)
+        self._grasps: dict[int, list[_Grasp]] = {}
+
+    def reachable(self, index: int) -> bool:
+        """Whether one of the sampled grasps of object `index` can be driven to."""
+        reachable = bool(self._reachable_grasps(index))
+        self._counters["reachable" if reachable else "unreachable"] += 1
+        return reachable
+
+    def placeable(self, index: int, positions: FloatArray) -> BoolArray:
+        """For each of `positions` (n, 2) whether one of the sampled grasps leads object `index` there."""
+        found = np.zeros(len(positions), dtype=bool)
+        for grasp in self._reachable_grasps(index):
+            found[~found] = grasp.leads_to(positions[~found])
+        return found
+
+    def pick_place(self, index: int, region: Region) -> PickPlace | None:
+        """Tries the sampled grasps in turn; None if none of them leads into `region`."""
+        self._counters["subproblems_tried"] += 1
+        positions = region.sample(self._settings.placement_samples, self._rng)
+        for grasp in self._reachable_grasps(index):
+            for position in positions[grasp.leads_to(positions)]:
+                approach, carry = self._from_agent.path_to(grasp.start), grasp.carry_to(position)
+                if approach is not None and carry is not None:
+                    self._counters["subproblems_solved"] += 1
+                    return PickPlace(index, approach, carry, position)
+        return None
+
+    def regrasp(self, index: int) -> PickPlace | None:
+        """Drives to a sampled grasp of object `index` and leaves the object where it is."""
+        for grasp in self._reachable_grasps(index):
+            approach = self._from_agent.path_to(grasp.start)
+            if approach is not None:
+                return PickPlace(index, approach, approach[-1:], self._configuration.objects[index])
+        return None
+
+    def _reachable_grasps(self, index: int) -> list[_Grasp]:
+        if index not in self._grasps:
+            offsets = self._curves[index].sample(self._settings.grasp_starts, self._rng)
+            reached = self._from_agent.reaches(self._configuration.objects[index] + offsets)
+            self._grasps[index] = [
+                _Grasp(self._problem, self._configuration, index, offset) for offset in offsets[reached]
+            ]
+        return self._grasps[index]

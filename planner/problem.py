@@ -1,0 +1,134 @@
+"""A scene prepared for planning: configurations and the configuration spaces that belong to them.
+
+Minkowski sums depend on shapes only, so each pair of bodies is summed once; a configuration's obstacles are the cached
+sums moved to where its objects are.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Self
+
+import numpy as np
+
+from converter.scene import Body, Scene
+from converter.shape import FloatArray, frozen_array
+from pcg.errors import InputError
+from planner.configuration_space import (
+    ConfigurationSpace,
+    ObstacleSet,
+    agent_obstacles,
+    body_obstacles,
+    sight_obstacles,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Configuration:
+    """Where the agent and all objects are.
+
+    Attributes:
+        agent: (2,) [m], world.
+        objects: (n_objects, 2) [m], world, in the order of the scene.
+    """
+
+    agent: FloatArray
+    objects: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "agent", frozen_array(self.agent, (2,)))
+        object.__setattr__(self, "objects", frozen_array(self.objects, (None, 2)))
+
+    def with_object(self, index: int, position: FloatArray) -> Self:
+        """The configuration with one object elsewhere."""
+        objects = self.objects.copy()
+        objects[index] = position
+        return replace(self, objects=objects)
+
+
+class Problem:
+    """A scene with its configuration-space obstacles; objects are addressed by index.
+
+    Raises:
+        InputError: bodies overlap at the start, or one is out of bounds.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.n_objects = len(scene.objects)
+        self.goal_index = scene.object_names.index(scene.goal.object)
+        self.initial = Configuration(scene.agent.position, np.array([body.position[:2] for body in scene.objects]))
+        tolerance, objects = scene.tolerance, scene.objects
+        for_agent = partial(agent_obstacles, scene.agent, tolerance=tolerance)
+        for_objects = [partial(body_obstacles, moving, tolerance=tolerance) for moving in objects]
+        _require_valid_start(scene, for_agent, for_objects)
+        self._agent_walls = _fixed(scene.walls, for_agent)
+        self._agent_objects = [for_agent(body) for body in objects]
+        self._object_walls = [_fixed(scene.walls, for_object) for for_object in for_objects]
+        self._object_objects = [[for_object(body) for body in objects] for for_object in for_objects]
+        self._sight_walls = _fixed(scene.walls, partial(sight_obstacles, tolerance=tolerance))
+        self.sight_objects = [sight_obstacles(body, tolerance) for body in objects]
+
+    def at_goal(self, configuration: Configuration) -> bool:
+        """Whether the goal-object's centre lies in the goal."""
+        return self.scene.goal.contains(configuration.objects[self.goal_index])
+
+    def agent_space(self, configuration: Configuration, held: int | None = None) -> ConfigurationSpace:
+        """Where the agent's centre may be; a `held` object is no obstacle."""
+        others = self._others(self._agent_objects, configuration, held)
+        return ConfigurationSpace(ObstacleSet.union([self._agent_walls, *others]), self.scene.bounds)
+
+    def object_space(self, configuration: Configuration, index: int) -> ConfigurationSpace:
+        """Where the centre of object `index` may be; the agent is no obstacle."""
+        others = self._others(self._object_objects[index], configuration, index)
+        return ConfigurationSpace(ObstacleSet.union([self._object_walls[index], *others]), self.scene.bounds)
+
+    def carry_space(self, configuration: Configuration, index: int, grasp: FloatArray) -> ConfigurationSpace:
+        """Where the agent's centre may be while it holds object `index` with its own centre at `grasp` from its."""
+        agent, carried = self.agent_space(configuration, held=index), self.object_space(configuration, index)
+        lower = np.maximum(agent.bounds[0], carried.bounds[0] + grasp)
+        upper = np.minimum(agent.bounds[1], carried.bounds[1] + grasp)
+        obstacles = ObstacleSet.union([agent.obstacles, carried.obstacles.moved(grasp)])
+        return ConfigurationSpace(obstacles, np.array([lower, upper]))
+
+    def sight_blockers(self, configuration: Configuration, *ignored: int) -> ObstacleSet:
+        """Walls and all objects but the `ignored` ones, as they block lines of sight."""
+        others = [
+            blocker.moved(configuration.objects[k])
+            for k, blocker in enumerate(self.sight_objects)
+            if k not in ignored
+        ]
+        return ObstacleSet.union([self._sight_walls, *others])
+
+    def _others(
+        self, relative: list[ObstacleSet], configuration: Configuration, ignored: int | None
+    ) -> list[ObstacleSet]:
+        return [relative[k].moved(configuration.objects[k]) for k in range(self.n_objects) if k != ignored]
+
+
+RelativeObstacles = Callable[[Body], ObstacleSet]
+"""The obstacles that a body is to some moving body, relative to the position of the former."""
+
+
+def _fixed(walls: Sequence[Body], obstacles: RelativeObstacles) -> ObstacleSet:
+    return ObstacleSet.union([obstacles(wall).moved(wall.position[:2]) for wall in walls]).with_free_corners()
+
+
+def _require_valid_start(scene: Scene, for_agent: RelativeObstacles, for_objects: Sequence[RelativeObstacles]) -> None:
+    movers = [
+        ("agent", scene.agent.position, for_agent, [*scene.walls, *scene.objects]),
+        *(
+            (f"object {body.name!r}", body.position[:2], for_object, [*scene.walls, *scene.objects[:i]])
+            for i, (body, for_object) in enumerate(zip(scene.objects, for_objects, strict=True))
+        ),
+    ]
+    for name, position, obstacles, others in movers:
+        if (position < scene.bounds[0]).any() or (position > scene.bounds[1]).any():
+            raise InputError(scene.name, f"{name} is out of bounds at {position.tolist()}")
+        for other in others:
+            space = ConfigurationSpace(obstacles(other).moved(other.position[:2]), scene.bounds)
+            if not space.point_free(position):
+                raise InputError(
+                    scene.name,
+                    f"{name} overlaps {other.name!r} at the start by more than the tolerance of {scene.tolerance:g} m",
+                )

@@ -1,0 +1,143 @@
+"""Forward search over pick-and-place subproblems: Algorithm 1 of [L].
+
+[L] Levit, Ortiz-Haro, Toussaint: Solving Sequential Manipulation Puzzles by Finding Easier Subproblems. ICRA 2024,
+arXiv 2405.02053.
+
+From the most promising configuration the search first tries to solve the original problem. If that fails, it moves
+each reachable object to a few proposed subgoals; every configuration that this leads to joins the tree, unless enough
+like it are known.
+"""
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from converter.plan import Status
+from converter.scene import Scene
+from planner.assemble import segments_of, subgoals_of
+from planner.frontier import Frontier, Node, Rejection
+from planner.heuristics import score
+from planner.pick_place import PickPlace, PickPlaceSolver, Region
+from planner.problem import Configuration, Problem
+from planner.result import PlanResult
+from planner.settings import Settings
+from planner.subgoals import propose_subgoals
+from planner.subproblems import subproblem_solvers
+
+
+def solve(
+    scene: Scene,
+    settings: Settings,
+    rng: np.random.Generator,
+    *,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> PlanResult:
+    """Searches for a plan that brings the goal-object to the goal.
+
+    Args:
+        scene: The puzzle.
+        settings: Method and budgets.
+        rng: Source of all randomness.
+        should_stop: Asked between subproblems; True ends the search with status `timeout`.
+
+    Raises:
+        InputError: bodies of the scene overlap at the start.
+    """
+    return Search(Problem(scene), settings, rng, should_stop).run()
+
+
+class Search:
+    """One run of Algorithm 1; afterwards `nodes` holds the search tree."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        settings: Settings,
+        rng: np.random.Generator,
+        should_stop: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self.problem = problem
+        self.settings = settings
+        self.rng = rng
+        self.nodes: list[Node] = []
+        self.counters: Counter[str] = Counter()
+        self._frontier = Frontier(settings)
+        self._rejection = Rejection(settings)
+        self._solver_for = subproblem_solvers(problem, settings, rng, self.counters)
+        self._started = time.perf_counter()
+        self._should_stop = should_stop
+
+    def run(self) -> PlanResult:
+        """Expands configurations until one solves the problem, none is left or the budget is spent."""
+        problem = self.problem
+        if problem.at_goal(problem.initial):
+            return self._result(Status.SOLVED)
+        self._add(problem.initial)
+        while self._frontier:
+            if self._out_of_budget():
+                return self._result(Status.TIMEOUT)
+            node = self._frontier.select_node()
+            self.counters["expansions"] += 1
+            subproblems = self._solver_for(node.configuration)
+            final = subproblems.pick_place(problem.goal_index, Region.of_goal(problem.scene.goal))
+            if final is not None:
+                return self._result(Status.SOLVED, [*node.steps(), final])
+            for index in range(problem.n_objects):
+                if not subproblems.reachable(index):
+                    continue
+                for step in self._solved_subproblems(subproblems, node.configuration, index):
+                    self._add(step.applied_to(node.configuration), node, step)
+            self._frontier.add(node)
+        return self._result(Status.EXHAUSTED)
+
+    def _solved_subproblems(
+        self, subproblems: PickPlaceSolver, configuration: Configuration, index: int
+    ) -> list[PickPlace]:
+        """`sub_solve` for each of `propose_subgoals`, the trivial one last."""
+        placeable = partial(subproblems.placeable, index)
+        subgoals = propose_subgoals(self.problem, configuration, index, placeable, self.settings, self.rng)
+        steps = []
+        for subgoal in subgoals:
+            if self._out_of_budget():
+                break
+            steps.append(subproblems.pick_place(index, Region.point(subgoal)))
+        steps.append(subproblems.regrasp(index))
+        return [step for step in steps if step is not None]
+
+    def _add(self, configuration: Configuration, parent: Node | None = None, step: PickPlace | None = None) -> None:
+        """Enters a configuration into the tree unless `rej` refuses it."""
+        if not self._rejection.accepts(configuration):
+            self.counters["rejected"] += 1
+            return
+        node = Node(configuration, parent, step, score(self.problem, configuration))
+        self.nodes.append(node)
+        self._frontier.add(node)
+
+    def _out_of_budget(self) -> bool:
+        return (
+            self._should_stop()
+            or self.counters["expansions"] >= self.settings.max_expansions
+            or time.perf_counter() - self._started > self.settings.time_limit
+        )
+
+    def _result(self, status: Status, steps: list[PickPlace] | None = None) -> PlanResult:
+        steps = steps or []
+        self.counters["nodes"] = len(self.nodes)
+        return PlanResult(
+            status=status,
+            time_s=time.perf_counter() - self._started,
+            segments=segments_of(self.problem.scene, steps),
+            subgoals=subgoals_of(self.problem.scene, steps),
+            certificate=self._certificate(status),
+            counters=dict(self.counters),
+        )
+
+    def _certificate(self, status: Status) -> str | None:
+        if status is not Status.EXHAUSTED:
+            return None
+        if len(self.nodes) == 1 and self.counters["reachable"] == 0:
+            return "no object can be reached"
+        return f"all {len(self.nodes)} configurations were expanded {self.settings.expansions} times"

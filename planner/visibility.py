@@ -1,0 +1,122 @@
+"""Shortest paths of a point among convex obstacles, exactly: a visibility graph searched by Dijkstra's algorithm.
+
+A shortest path among polygons turns at their convex vertices only (Lozano-Perez and Wesley 1979). Obstacles with
+rounded edges enter by the tight polygons of `ObstacleSet.corners`, whose edges are tangent to them, so a corridor
+between parallel walls is passable even without clearance; every edge is checked against the rounded shapes
+themselves. Nothing is sampled: of the free space only slivers between two arcs that the tangents cut off are lost.
+
+One tree answers every query from its start, which is what a search asks: where can the agent, or the agent with an
+object, get to from here?
+"""
+
+import numpy as np
+from numba import njit
+
+from converter.shape import FloatArray
+from planner.configuration_space import ConfigurationSpace
+from planner.kernel import BoolArray, IntArray, segment_free
+
+
+@njit(cache=True)
+def _shortest_tree(
+    points: FloatArray, vertices: FloatArray, first: IntArray, rho: FloatArray, boxes: FloatArray
+) -> tuple[FloatArray, IntArray]:
+    """Distances [m] of all `points` (n, 2) from points[0] over free straight edges, and their predecessors."""
+    n = len(points)
+    distance = np.full(n, np.inf)
+    previous = np.full(n, -1)
+    settled = np.zeros(n, np.bool_)
+    distance[0] = 0.0
+    for _ in range(n):
+        best = -1
+        for i in range(n):
+            if not settled[i] and distance[i] < np.inf and (best < 0 or distance[i] < distance[best]):
+                best = i
+        if best < 0:
+            break
+        settled[best] = True
+        x, y = points[best]
+        for i in range(n):
+            if settled[i]:
+                continue
+            through = distance[best] + np.hypot(points[i, 0] - x, points[i, 1] - y)
+            if through < distance[i] and segment_free(
+                x, y, points[i, 0], points[i, 1], vertices, first, rho, boxes
+            ):
+                distance[i] = through
+                previous[i] = best
+    return distance, previous
+
+
+@njit(cache=True)
+def _best_last_turn(
+    goal: FloatArray,
+    points: FloatArray,
+    distance: FloatArray,
+    vertices: FloatArray,
+    first: IntArray,
+    rho: FloatArray,
+    boxes: FloatArray,
+) -> int:
+    """The point from which the straight edge to `goal` completes a shortest path; -1 if no point sees it."""
+    total = distance + np.hypot(points[:, 0] - goal[0], points[:, 1] - goal[1])
+    for i in np.argsort(total):
+        if total[i] == np.inf:
+            break
+        if segment_free(points[i, 0], points[i, 1], goal[0], goal[1], vertices, first, rho, boxes):
+            return i
+    return -1
+
+
+@njit(cache=True)
+def _last_turns(
+    goals: FloatArray,
+    points: FloatArray,
+    distance: FloatArray,
+    vertices: FloatArray,
+    first: IntArray,
+    rho: FloatArray,
+    boxes: FloatArray,
+) -> IntArray:
+    """`_best_last_turn` for each row of `goals` (m, 2)."""
+    turns = np.empty(len(goals), np.int64)
+    for i in range(len(goals)):
+        turns[i] = _best_last_turn(goals[i], points, distance, vertices, first, rho, boxes)
+    return turns
+
+
+class ShortestPathTree:
+    """Shortest paths from one start to anywhere in a configuration space.
+
+    Args:
+        space: Where the point may be.
+        start: (2,) [m], a free point of `space`.
+    """
+
+    def __init__(self, space: ConfigurationSpace, start: FloatArray) -> None:
+        corners = space.obstacles.corners
+        self.space = space
+        self._points = np.ascontiguousarray(np.vstack([start[None], corners[space.points_free(corners)]]))
+        self._distance, self._previous = _shortest_tree(self._points, *space.obstacles.arrays)
+
+    def reaches(self, goals: FloatArray) -> BoolArray:
+        """For each of `goals` (n, 2) whether a free path leads to it."""
+        reached = self.space.points_free(goals)
+        reached[reached] = self._last_turns(goals[reached]) >= 0
+        return reached
+
+    def path_to(self, goal: FloatArray) -> FloatArray | None:
+        """The shortest path (n, 2) [m] from the start to `goal` (2,), or None if there is none."""
+        if not self.space.point_free(goal):
+            return None
+        turn = int(self._last_turns(goal[None])[0])
+        if turn < 0:
+            return None
+        path = [goal]
+        while turn >= 0:
+            path.append(self._points[turn])
+            turn = int(self._previous[turn])
+        return np.array(path[::-1])
+
+    def _last_turns(self, goals: FloatArray) -> IntArray:
+        return np.asarray(_last_turns(goals, self._points, self._distance, *self.space.obstacles.arrays))
