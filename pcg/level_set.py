@@ -1,0 +1,193 @@
+"""Level sets: a folder with the levels as XSB text and a manifest of what is known about each.
+
+`manifest.jsonl` holds one JSON object a line, one line a level, in the order of `levels.xsb`; `ManifestEntry` lists its
+fields. XSB cannot say which crate has to reach the goal, the manifest can: whoever reads the levels gets it from there.
+"""
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field
+
+from pcg.errors import InputError
+from pcg.files import read_text, write_text
+from pcg.level import Level
+from pcg.metrics import LevelStatistics, occluded, statistics
+from pcg.solver import Solution, goal_crate_of
+from pcg.symmetry import content_hash
+from pcg.validation import Document, validated
+from pcg.xsb import read_levels, write_levels
+
+LEVELS_FILE = "levels.xsb"
+MANIFEST_FILE = "manifest.jsonl"
+
+
+@dataclass(frozen=True)
+class GeneratedLevel:
+    """A level and where it came from.
+
+    Attributes:
+        level: Named; with its goal crate.
+        solution: The solver's result for it.
+        agent: Name of the generator.
+        seed: Seed of the run that made it.
+        representation: Of a learned agent, how it edits levels (narrow, turtle, wide).
+        control_targets: What was asked of the generator for this level, by name.
+        rejected: Attempts thrown away before this level was found, by reason.
+    """
+
+    level: Level
+    solution: Solution
+    agent: str
+    seed: int
+    representation: str | None = None
+    control_targets: Mapping[str, float] = field(default_factory=dict)
+    rejected: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LevelSet:
+    """Generated levels in order."""
+
+    levels: tuple[GeneratedLevel, ...]
+
+    @property
+    def rejected(self) -> Mapping[str, int]:
+        """Attempts thrown away, by reason, over all levels."""
+        total: Counter[str] = Counter()
+        for generated in self.levels:
+            total.update(generated.rejected)
+        return dict(total)
+
+
+class ManifestEntry(Document):
+    """A line of `manifest.jsonl`.
+
+    Attributes:
+        format: Version of the format.
+        name: Name of the level in the XSB file.
+        agent: Name of the generator.
+        seed: Seed of the run that made it.
+        representation: Of a learned agent, how it edits levels (narrow, turtle, wide).
+        control_targets: What was asked of the generator for this level, by name.
+        statistics: What the level holds.
+        occluded: Whether a wall or another crate hides the goal crate from the player.
+        solvable: Whether Sokoban pushes solve it; null if the solver gave up.
+        pushes: Least number of pushes, null without a solution; the next two likewise.
+        moves: Length of the solution.
+        solution: The solution in LURD notation.
+        goal_crate: Row and column of the crate that has to reach the first target, inner cells counted from 0.
+        content_hash: Hash of the tiles, the same for all eight symmetries.
+        tiles_hash: Hash of the tiles as they are; `goal_crate` holds only for a level with this hash.
+    """
+
+    format: Literal[1] = 1
+    name: str
+    agent: str
+    seed: int
+    representation: str | None = None
+    control_targets: dict[str, float] = Field(default_factory=dict)
+    statistics: LevelStatistics
+    occluded: bool
+    solvable: bool | None
+    pushes: int | None = None
+    moves: int | None = None
+    solution: str | None = None
+    goal_crate: tuple[int, int]
+    content_hash: str
+    tiles_hash: str
+
+
+def manifest_entry(generated: GeneratedLevel) -> ManifestEntry:
+    """What the manifest says about a level."""
+    level, solution = generated.level, generated.solution
+    goal_crate = goal_crate_of(level, solution)
+    return ManifestEntry(
+        name=level.name,
+        agent=generated.agent,
+        seed=generated.seed,
+        representation=generated.representation,
+        control_targets=dict(generated.control_targets),
+        statistics=statistics(level),
+        occluded=occluded(level, goal_crate),
+        solvable=solution.solvable,
+        pushes=solution.pushes,
+        moves=solution.moves,
+        solution=solution.lurd,
+        goal_crate=goal_crate,
+        content_hash=content_hash(level),
+        tiles_hash=_tiles_hash(level),
+    )
+
+
+def write_level_set(folder: Path, levels: Iterable[GeneratedLevel]) -> None:
+    """Writes `levels.xsb` and `manifest.jsonl` into `folder`, which is made if it is missing.
+
+    Raises:
+        ValueError: there is no level, or two have the same name or none.
+        InputError: a file cannot be written.
+    """
+    levels = list(levels)
+    if not levels or not all(generated.level.name for generated in levels):
+        raise ValueError("a level set needs at least one level, and every level a name")
+    lines = [manifest_entry(generated).model_dump_json() + "\n" for generated in levels]
+    write_levels(folder / LEVELS_FILE, (generated.level for generated in levels))
+    write_text(folder / MANIFEST_FILE, "".join(lines))
+
+
+def read_level_set(path: Path) -> list[Level]:
+    """The levels of a level set's folder or of an XSB file, with the goal crates that the manifest records.
+
+    A `manifest.jsonl` beside an XSB file counts for those levels that it names and that have not changed since; an
+    edited or turned level has no goal crate any more.
+
+    Raises:
+        InputError: naming file, line and reason.
+    """
+    levels_path = path / LEVELS_FILE if path.is_dir() else path
+    levels = read_levels(levels_path)
+    manifest_path = levels_path.parent / MANIFEST_FILE
+    if not manifest_path.exists():
+        return levels
+    entries = {entry.name: entry for entry in read_manifest(manifest_path)}
+    return [_with_recorded_goal(level, entries.get(level.name), manifest_path) for level in levels]
+
+
+def read_manifest(path: Path) -> list[ManifestEntry]:
+    """Reads the lines of a manifest.
+
+    Raises:
+        InputError: naming file, line, field and reason; also if two lines name the same level.
+    """
+    entries: dict[str, ManifestEntry] = {}
+    for number, line in enumerate(read_text(path).split("\n"), start=1):
+        if not line.strip():
+            continue
+        where = f"{path}: line {number}"
+        try:
+            document = json.loads(line)
+        except (ValueError, RecursionError) as error:
+            raise InputError(where, f"not JSON: {error}") from None
+        entry = validated(ManifestEntry, document, where)
+        if entry.name in entries:
+            raise InputError(where, f"name: a line before names the level {entry.name!r} too")
+        entries[entry.name] = entry
+    return list(entries.values())
+
+
+def _with_recorded_goal(level: Level, entry: ManifestEntry | None, manifest: Path) -> Level:
+    if entry is None or entry.tiles_hash != _tiles_hash(level):
+        return level
+    try:
+        return replace(level, goal_crate=entry.goal_crate)
+    except ValueError as error:
+        raise InputError(str(manifest), f"level {level.name!r}: goal_crate: {error}") from None
+
+
+def _tiles_hash(level: Level) -> str:
+    return hashlib.sha256(repr((level.shape, level.tiles.tobytes())).encode()).hexdigest()[:16]

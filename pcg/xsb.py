@@ -1,0 +1,194 @@
+"""Reading and writing levels as XSB text, the format that every Sokoban tool knows.
+
+`#` wall, space, `-` or `_` floor, `@` player, `+` player on target, `$` crate, `*` crate on target, `.` target. A level
+is a block of lines that begin with a wall, after any floor; a blank or any other line ends it. All other lines are
+text. Two kinds of text name a level, and the first of these found is its name:
+
+1. a `Title:` line below the level, with no blank line between them and the level;
+2. the last `; name` line above it, again with no blank line between (Boxoban);
+3. the first `; name` line below it, again with no blank line between;
+4. the last `; name` line anywhere between the level before and this one (Microban).
+
+A line names one level only. A level without a name is called after the file and its number, counted from 1: `file-1`.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import takewhile
+from pathlib import Path
+
+import numpy as np
+
+from pcg.errors import InputError
+from pcg.files import read_text, write_text
+from pcg.grid import cells_of, reachable
+from pcg.level import Level, Tile, TileArray
+
+MAX_SIDE = 1_000
+"""Rows and columns of a level, with its outer wall."""
+MAX_CELLS = 20_000_000
+"""Cells of all levels in a file; also the bytes of a file."""
+
+_CHARACTERS = {
+    Tile.FLOOR: " ",
+    Tile.WALL: "#",
+    Tile.PLAYER: "@",
+    Tile.CRATE: "$",
+    Tile.TARGET: ".",
+    Tile.CRATE_ON_TARGET: "*",
+    Tile.PLAYER_ON_TARGET: "+",
+}
+_TILES = {character: tile for tile, character in _CHARACTERS.items()} | {"-": Tile.FLOOR, "_": Tile.FLOOR}
+_ROW = re.compile(r"[ \t_-]*#|[ _-]*[@+$*.][ _@+$*.#-]*$")
+_TITLE = re.compile(r"title\s*:(.*)", re.IGNORECASE)
+
+
+def read_levels(path: Path) -> list[Level]:
+    """Reads every level of an XSB file.
+
+    Raises:
+        InputError: naming file and line; see `parse_levels`.
+    """
+    try:
+        size = path.stat().st_size
+    except OSError:
+        size = 0  # read_text says what is wrong
+    if size > MAX_CELLS:
+        raise InputError(str(path), f"the file has {size} bytes; at most {MAX_CELLS} are read")
+    return parse_levels(read_text(path), str(path))
+
+
+def write_levels(path: Path, levels: Iterable[Level]) -> None:
+    """Writes levels to an XSB file, which `read_levels` reads back but for their goal crates.
+
+    Raises:
+        ValueError: two levels have the same name.
+        InputError: the file cannot be written.
+    """
+    levels = list(levels)
+    names = [level.name for level in levels if level.name]
+    if repeated := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(f"level names must differ, found {', '.join(repeated)} twice")
+    write_text(path, "\n".join(format_level(level) for level in levels))
+
+
+def format_level(level: Level) -> str:
+    """The XSB text of a level: a `; name` line if it has a name, then its rows within the outer wall."""
+    tiles = np.pad(level.tiles, 1, constant_values=Tile.WALL)
+    rows = ["".join(_CHARACTERS[Tile(tile)] for tile in row) for row in tiles.tolist()]
+    return "\n".join([*([f"; {level.name}"] if level.name else []), *rows, ""])
+
+
+def parse_levels(text: str, where: str) -> list[Level]:
+    """The levels of an XSB text, without their outer walls.
+
+    Cells outside of the walls that enclose a level become walls.
+
+    Args:
+        text: Lines end with LF or CR LF.
+        where: The file's path; it begins every error message, and unnamed levels are called after its stem.
+
+    Raises:
+        InputError: there is no level, a row holds an unknown character, a level is too large, is not enclosed by
+            walls, is not playable (`Level.require_playable`), or has the name of an earlier one.
+    """
+    levels: list[Level] = []
+    lines_of_names: dict[str, int] = {}
+    cells = 0
+    for number, block in enumerate(_named_blocks(text), start=1):
+        level = _level(block, where)
+        cells += level.tiles.size
+        if cells > MAX_CELLS:
+            raise InputError(_at(where, block.line), f"the levels have more than {MAX_CELLS} cells")
+        name = block.name or _as_name(f"{Path(where).stem}-{number}")
+        if name in lines_of_names:
+            raise InputError(
+                _at(where, block.line), f"name {name!r} is taken by the level at line {lines_of_names[name]}"
+            )
+        lines_of_names[name] = block.line
+        levels.append(replace(level, name=name))
+    if not levels:
+        raise InputError(where, "no level found: no line begins with a wall '#'")
+    return levels
+
+
+@dataclass(frozen=True)
+class _Block:
+    """Consecutive rows, the first of them on line `line` counted from 1, and the name that the text gives them."""
+
+    line: int
+    rows: list[str]
+    name: str
+
+
+def _named_blocks(text: str) -> Iterator[_Block]:
+    lines = text.replace("\r\n", "\n").split("\n")
+    used: set[int] = set()
+    end = 0
+    while (start := next((i for i in range(end, len(lines)) if _ROW.match(lines[i])), None)) is not None:
+        before = end
+        end = next((i for i in range(start, len(lines)) if not _ROW.match(lines[i])), len(lines))
+        named = next((i for i in _naming_lines(lines, before, start, end) if i not in used), None)
+        if named is not None:
+            used.add(named)
+        yield _Block(start + 1, lines[start:end], "" if named is None else _offered_name(lines[named]))
+
+
+def _naming_lines(lines: list[str], before: int, start: int, end: int) -> Iterator[int]:
+    """The lines that may name the rows `start` to `end`, best first; the rows before them ended at `before`."""
+    text_above = range(start - 1, before - 1, -1)
+    above = list(takewhile(lambda i: lines[i].strip(), text_above))
+    below = list(takewhile(lambda i: lines[i].strip() and not _ROW.match(lines[i]), range(end, len(lines))))
+    yield from (i for i in below if _TITLE.match(lines[i].strip()))
+    yield from (i for i in (*above, *below, *text_above) if _offered_name(lines[i]))
+
+
+def _offered_name(line: str) -> str:
+    line = line.strip()
+    title = _TITLE.match(line)
+    return _as_name(title[1] if title else line[1:] if line.startswith(";") else "")
+
+
+def _as_name(text: str) -> str:
+    return "".join(character for character in " ".join(text.split()) if character.isprintable())
+
+
+def _level(block: _Block, where: str) -> Level:
+    tiles = _tiles(block, where)
+    # The ring of floor around the rows joins all that is outside.
+    outside = reachable(tiles != Tile.WALL, [(0, 0)])
+    for row, column in cells_of(outside & (tiles != Tile.FLOOR)):
+        thing = Tile(tiles[row, column]).name.lower().replace("_", " ")
+        raise InputError(
+            _at(where, block.line + row - 1), f"the {thing} in column {column} of the level is not enclosed by walls"
+        )
+    rows, columns = np.nonzero((tiles == Tile.WALL).any(axis=1))[0], np.nonzero((tiles == Tile.WALL).any(axis=0))[0]
+    inner = np.where(outside, Tile.WALL, tiles)[rows[0] + 1 : rows[-1], columns[0] + 1 : columns[-1]]
+    if inner.size == 0:
+        raise InputError(_at(where, block.line), "the walls enclose no cell")
+    level = Level(inner)
+    level.require_playable(_at(where, block.line))
+    return level
+
+
+def _tiles(block: _Block, where: str) -> TileArray:
+    """The (rows + 2, columns + 2) tiles of a block within a ring of floor."""
+    rows = [row.rstrip(" -_") for row in block.rows]
+    columns = max(map(len, rows))
+    if max(len(rows), columns) > MAX_SIDE:
+        raise InputError(
+            _at(where, block.line), f"the level has {len(rows)} x {columns} cells; at most {MAX_SIDE} x {MAX_SIDE}"
+        )
+    tiles = np.full((len(rows) + 2, columns + 2), Tile.FLOOR, dtype=np.uint8)
+    for i, row in enumerate(rows):
+        if unknown := set(row) - _TILES.keys():
+            column = min(map(row.index, unknown))
+            problem = f"column {column + 1} holds {row[column]!r}; allowed are # @ + $ * . and, for floor, space - _"
+            raise InputError(_at(where, block.line + i), problem)
+        tiles[i + 1, 1 : len(row) + 1] = [_TILES[character] for character in row]
+    return tiles
+
+
+def _at(where: str, line: int) -> str:
+    return f"{where}: line {line}"
