@@ -1,0 +1,221 @@
+"""Painting drawings in pixels.
+
+Every shape is a convex polygon inflated by a disc, so its signed distance is exact and cheap, and the share of a pixel
+that it covers is `clamp(1/2 - distance / pixel, 0, 1)`. That gives smooth edges at sub-pixel accuracy without
+supersampling, and a mirrored drawing gives the mirrored picture. Images are (h, w, 3) uint8, red-green-blue, row 0 at
+the top.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from converter.drawing import Drawing, Item, Label, Line, Rounded, Shape, extent
+from converter.shape import FloatArray
+from converter.theme import Color
+from pcg.errors import InputError
+
+Image = npt.NDArray[np.uint8]
+
+MAX_PIXELS = 25_000_000
+"""Largest picture; its intermediate arrays take about a gigabyte."""
+
+FINEST_STEP = 0.25
+"""Vertices of a line closer than this to the one before [px] are left out."""
+
+
+class _Window(NamedTuple):
+    """A rectangle of pixels: where it is in the image, and the world coordinates [m] of its pixels' centres."""
+
+    rows: slice
+    columns: slice
+    x: FloatArray
+    y: FloatArray
+
+
+def paint(drawing: Drawing, width_px: int) -> Image:
+    """The drawing as an image of `width_px` pixels' width; the height follows from the drawing's proportions.
+
+    Raises:
+        InputError: the image would have no pixels or more than `MAX_PIXELS`.
+    """
+    width, height = drawing.upper - drawing.lower
+    height_px = round(width_px * height / width)
+    require_paintable(width_px, height_px)
+    image = np.empty((height_px, width_px, 3), dtype=np.uint8)
+    image[:] = _bytes(drawing.background)
+    return paint_over(image, drawing)
+
+
+def paint_over(image: Image, drawing: Drawing) -> Image:
+    """A copy of `image`, which shows the same rectangle as `drawing`, with the drawing's items above it."""
+    painted = image.copy()
+    for item in drawing.items:
+        _PAINTERS[type(item)](painted, drawing, item)
+    return painted
+
+
+def require_paintable(width_px: int, height_px: int) -> None:
+    """Refuses images without pixels and images too large for memory.
+
+    Raises:
+        InputError: saying how large the image may be.
+    """
+    if width_px < 1 or height_px < 1 or width_px * height_px > MAX_PIXELS:
+        raise InputError(
+            "image size", f"{width_px} x {height_px} pixels; at least 1 x 1 and at most {MAX_PIXELS} pixels in all"
+        )
+
+
+def _paint_shape(image: Image, drawing: Drawing, shape: Shape) -> None:
+    """Shares the pixels on the border between fill and outline, without letting the ground shine through."""
+    pixel, width = _pixel(image, drawing), shape.outline_width
+    window = _window(image, drawing, extent(shape.parts), width + pixel)
+    inside, around = np.zeros((2, len(window.y), len(window.x)))
+    for part in shape.parts:
+        near = _window(image, drawing, extent((part,)), width)
+        place = _place(near, window)
+        distance = _distance(part, near)
+        # Parts that touch along an edge cover half of its pixels each: their sum leaves no seam. Their outlines
+        # overlap there, and the larger one counts.
+        inside[place] = np.minimum(inside[place] + _coverage(distance, pixel), 1.0)
+        around[place] = np.maximum(around[place], _coverage(distance - width, pixel))
+    outline = np.maximum(around - inside, 0.0) if width > 0 else np.zeros_like(inside)
+    _blend(image[window.rows, window.columns], [(shape.fill, inside * shape.fill_opacity), (shape.outline, outline)])
+
+
+def _paint_line(image: Image, drawing: Drawing, line: Line) -> None:
+    pixel, radius = _pixel(image, drawing), line.width / 2
+    points = _thinned(line.points, FINEST_STEP * pixel)
+    window = _window(image, drawing, extent((Rounded(points, radius),)), pixel)
+    covered = np.zeros((len(window.y), len(window.x)))
+    for i in range(max(len(points) - 1, 1)):
+        stretch = Rounded(points[i : i + 2], radius)
+        near = _window(image, drawing, extent((stretch,)), 0.0)
+        place = _place(near, window)
+        covered[place] = np.maximum(covered[place], _coverage(_distance(stretch, near), pixel))
+    _blend(image[window.rows, window.columns], [(line.color, covered)])
+
+
+def _paint_label(image: Image, drawing: Drawing, label: Label) -> None:
+    pixel = _pixel(image, drawing)
+    ink = _text_mask(label.text, max(round(label.height / pixel), 1))
+    height, width = ink.shape
+    column = round((label.position[0] - drawing.lower[0]) / pixel - width / 2)
+    row = round((drawing.upper[1] - label.position[1]) / pixel - height / 2)
+    top, left = max(row, 0), max(column, 0)
+    bottom, right = min(row + height, image.shape[0]), min(column + width, image.shape[1])
+    if top >= bottom or left >= right:
+        return
+    visible = ink[top - row : bottom - row, left - column : right - column]
+    _blend(image[top:bottom, left:right], [(label.color, visible)])
+
+
+_PAINTERS: dict[type[Item], Callable[[Image, Drawing, Any], None]] = {
+    Shape: _paint_shape,
+    Line: _paint_line,
+    Label: _paint_label,
+}
+
+
+def _pixel(image: Image, drawing: Drawing) -> float:
+    """Side of a pixel [m]."""
+    columns: int = image.shape[1]
+    return float(drawing.upper[0] - drawing.lower[0]) / columns
+
+
+def _window(image: Image, drawing: Drawing, corners: FloatArray, margin: float) -> _Window:
+    """The pixels that the box between `corners` (2, 2) [m], widened by `margin` [m], can touch."""
+    pixel = _pixel(image, drawing)
+    (left, low), (right, high) = corners
+    first_column, last_column = (np.array([left - margin, right + margin]) - drawing.lower[0]) / pixel
+    first_row, last_row = (drawing.upper[1] - np.array([high + margin, low - margin])) / pixel
+    rows = _clipped(first_row, last_row, image.shape[0])
+    columns = _clipped(first_column, last_column, image.shape[1])
+    x = drawing.lower[0] + (np.arange(columns.start, columns.stop) + 0.5) * pixel
+    y = drawing.upper[1] - (np.arange(rows.start, rows.stop) + 0.5) * pixel
+    return _Window(rows, columns, x, y)
+
+
+def _clipped(first: float, last: float, size: int) -> slice:
+    start = int(np.clip(np.floor(first - 0.5), 0, size))
+    return slice(start, max(int(np.clip(np.ceil(last + 0.5), 0, size)), start))
+
+
+def _place(inner: _Window, outer: _Window) -> tuple[slice, slice]:
+    """Where `inner` lies in an array over the pixels of `outer`, which contains it."""
+    row, column = outer.rows.start, outer.columns.start
+    rows = slice(inner.rows.start - row, inner.rows.stop - row)
+    return rows, slice(inner.columns.start - column, inner.columns.stop - column)
+
+
+def _distance(part: Rounded, window: _Window) -> FloatArray:
+    """(h, w) [m]: distance of the window's pixel centres to `part`, negative inside.
+
+    The distance to a convex polygon is the least over its edges, negative where the point lies left of them all; an
+    inflated polygon's is that less the radius.
+    """
+    x, y = window.x[None, :], window.y[:, None]
+    core = part.core
+    if len(core) == 1:
+        from_center: FloatArray = np.hypot(x - core[0, 0], y - core[0, 1])
+        return from_center - part.radius
+    squared = np.full((len(window.y), len(window.x)), np.inf)
+    inside = np.full(squared.shape, fill_value=len(core) > 2)
+    edges = np.roll(core, -1, axis=0) - core
+    for (ax, ay), (ex, ey) in zip(core, edges, strict=True):
+        dx, dy = x - ax, y - ay
+        along = np.clip((dx * ex + dy * ey) / max(ex * ex + ey * ey, 1e-300), 0.0, 1.0)
+        np.minimum(squared, (dx - along * ex) ** 2 + (dy - along * ey) ** 2, out=squared)
+        inside &= ex * dy - ey * dx >= 0
+    from_core: FloatArray = np.where(inside, -1.0, 1.0) * np.sqrt(squared)
+    return from_core - part.radius
+
+
+def _coverage(distance: FloatArray, pixel: float) -> FloatArray:
+    """Share of each pixel that a shape at signed `distance` [m] covers."""
+    share: FloatArray = np.clip(0.5 - distance / pixel, 0.0, 1.0)
+    return share
+
+
+def _blend(pixels: Image, layers: list[tuple[Color, FloatArray]]) -> None:
+    """Mixes colours into `pixels` (h, w, 3), each with its (h, w) weights; the weights add up to at most 1."""
+    ground = 1.0 - np.sum([weights for _, weights in layers], axis=0)
+    mixed = pixels * ground[..., None]
+    for color, weights in layers:
+        mixed += weights[..., None] * _bytes(color)
+    pixels[:] = np.rint(mixed)
+
+
+def _bytes(color: Color) -> npt.NDArray[np.uint8]:
+    rounded: npt.NDArray[np.uint8] = np.rint(np.array(color) * 255).astype(np.uint8)
+    return rounded
+
+
+def _thinned(points: FloatArray, step: float) -> FloatArray:
+    """`points` without those closer than `step` to the one kept before, the last one apart."""
+    kept = [points[0]]
+    for point in points[1:-1]:
+        if np.hypot(*(point - kept[-1])) >= step:
+            kept.append(point)
+    return np.array([*kept, *points[1:][-1:]])
+
+
+def _text_mask(text: str, size_px: int) -> FloatArray:
+    """(h, w) in 0..1: where the text has ink, cropped to it."""
+    _, top, width, height = cv2.getTextSize((0, 0), text, (0, 0), _font(), size_px, 600)
+    mask = np.zeros((2 * height + size_px, width + 2 * size_px), dtype=np.uint8)
+    cv2.putText(mask, text, (size_px // 2, size_px // 2 - top), 255, _font(), size_px, 600)
+    rows, columns = np.nonzero(mask.any(axis=1))[0], np.nonzero(mask.any(axis=0))[0]
+    if len(rows) == 0:
+        return np.zeros((0, 0))
+    return mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] / 255.0
+
+
+@cache
+def _font() -> cv2.FontFace:
+    return cv2.FontFace("sans")

@@ -1,0 +1,89 @@
+"""Pictures of levels: one square tile a cell, the outer wall included."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from converter.drawing import Drawing, Item, Shape, box, disc
+from converter.raster import Image, paint, require_paintable
+from converter.theme import PAPER, Color, Theme, mixed
+from pcg.errors import InputError
+from pcg.level import Level, Tile
+
+MIN_TILE_PX = 4
+
+GOAL_CRATE = len(Tile)
+GOAL_CRATE_ON_TARGET = len(Tile) + 1
+"""Kinds of tiles beyond those of a level's cells."""
+
+_CENTER = np.array([0.5, 0.5])
+
+
+def draw_level(level: Level, tile_px: int = 40, *, theme: Theme = PAPER) -> Image:
+    """The level as an image of (rows + 2) x (columns + 2) tiles of `tile_px` pixels.
+
+    Raises:
+        InputError: a tile would have fewer than `MIN_TILE_PX` pixels, or the image would be too large.
+    """
+    if tile_px < MIN_TILE_PX:
+        raise InputError("tile size", f"{tile_px} pixels; at least {MIN_TILE_PX} are needed")
+    kinds = np.pad(level.tiles, 1, constant_values=Tile.WALL)
+    if level.goal_crate is not None:
+        row, column = level.goal_crate
+        on_target = level.tiles[row, column] == Tile.CRATE_ON_TARGET
+        kinds[row + 1, column + 1] = GOAL_CRATE_ON_TARGET if on_target else GOAL_CRATE
+    rows, columns = kinds.shape
+    require_paintable(columns * tile_px, rows * tile_px)
+    drawings = tile_drawings(theme)
+    tiles = np.stack([paint(drawings[kind], tile_px) for kind in range(len(drawings))])
+    return tiles[kinds].transpose(0, 2, 1, 3, 4).reshape(rows * tile_px, columns * tile_px, 3)
+
+
+def tile_drawings(theme: Theme) -> Mapping[int, Drawing]:
+    """The unit square of every kind of tile: those of `Tile`, `GOAL_CRATE` and `GOAL_CRATE_ON_TARGET`."""
+    floor = _floor(theme)
+    target = [*floor, *_target(theme)]
+    crate, goal_crate, player = _crate(theme.crate, theme), _crate(theme.goal_object, theme), _player(theme)
+    items: dict[int, list[Item]] = {
+        Tile.FLOOR: floor,
+        Tile.WALL: _wall(theme),
+        Tile.PLAYER: [*floor, *player],
+        Tile.CRATE: [*floor, *crate],
+        Tile.TARGET: target,
+        Tile.CRATE_ON_TARGET: [*target, *crate],
+        Tile.PLAYER_ON_TARGET: [*target, *player],
+        GOAL_CRATE: [*floor, *goal_crate],
+        GOAL_CRATE_ON_TARGET: [*target, *goal_crate],
+    }
+    return {kind: Drawing(np.zeros(2), np.ones(2), theme.floor_line, tuple(items[kind])) for kind in items}
+
+
+def _floor(theme: Theme) -> list[Item]:
+    return [Shape((box(_CENTER, (0.96, 0.96)),), theme.floor)]
+
+
+def _wall(theme: Theme) -> list[Item]:
+    """A block lit from the upper left."""
+    return [
+        Shape((box(_CENTER, (1.0, 1.0)),), theme.wall_dark),
+        Shape((box((0.48, 0.52), (0.94, 0.94), 0.06),), theme.wall_light),
+        Shape((box((0.5, 0.5), (0.88, 0.88), 0.06),), theme.wall),
+    ]
+
+
+def _target(theme: Theme) -> list[Item]:
+    return [Shape((box(_CENTER, (0.82, 0.82), 0.04),), theme.goal, outline=theme.goal_dark, outline_width=0.03)]
+
+
+def _player(theme: Theme) -> list[Item]:
+    return [Shape((disc(_CENTER, 0.36),), theme.agent, outline=theme.outline, outline_width=0.04)]
+
+
+def _crate(color: Color, theme: Theme) -> list[Item]:
+    """Three planks in a frame."""
+    frame, shade = mixed(color, theme.outline, 0.15), mixed(color, theme.outline, 0.45)
+    planks = [box((0.5, y), (0.48, 0.14)) for y in (0.34, 0.5, 0.66)]
+    return [
+        Shape((box(_CENTER, (0.66, 0.66), 0.03),), frame, outline=theme.outline, outline_width=0.04),
+        *(Shape((plank,), color, outline=shade, outline_width=0.025) for plank in planks),
+    ]

@@ -1,0 +1,150 @@
+"""Pictures of plans: one image that shows the whole motion.
+
+The scene stands as it is at the start. The agent's path is thin and grey where it drives alone, thick and in the
+object's colour where it carries. Translucent shapes with numbers show where objects are placed, in order, and one
+without a number where the agent ends.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from converter.drawing import Drawing, Item, Label, Line, Rounded, Shape
+from converter.plan import Plan
+from converter.raster import Image, paint
+from converter.render_scene import agent_shape, body_shape, object_color, scene_drawing
+from converter.replay import Step, points_along, replay
+from converter.scene import Body, Scene
+from converter.shape import FloatArray, rotation
+from converter.theme import PAPER, Color, Theme, mixed
+
+SAME_PLACE = 1e-3
+"""Placements of an object closer than this [m] share one shape and one label."""
+
+LABELLED = 3
+"""Numbers that a shared label lists."""
+
+GHOST_SHADE = 0.35
+"""Share of the outline's colour in the outlines of translucent shapes and of paths."""
+
+CASING = 1.0
+"""Width of the outline of carrying paths, in units of the picture; without it white ones would not show."""
+
+ARROW = np.array([[0.6, 0.0], [-0.4, 0.5], [-0.4, -0.5]])
+ARROW_LENGTH = 9.0
+"""Arrow heads show the direction of paths at least three times as long, in units of the picture."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """A place where an object is put down, once or several times.
+
+    Attributes:
+        body: The object.
+        position: (2,) [m], world: its centre there.
+        numbers: Which of the plan's placements these are, counted from 1.
+    """
+
+    body: Body
+    position: FloatArray
+    numbers: tuple[int, ...]
+
+
+def draw_plan(scene: Scene, plan: Plan, width_px: int = 600, *, theme: Theme = PAPER) -> Image:
+    """The plan as an image; a plan without segments gives the picture of the scene.
+
+    Raises:
+        InputError: the plan carries an object that the scene does not have, or the image would be too large.
+    """
+    return paint(plan_drawing(scene, plan, theme=theme), width_px)
+
+
+def plan_drawing(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Drawing:
+    """The plan over the scene at its start.
+
+    Raises:
+        InputError: the plan carries an object that the scene does not have.
+    """
+    start = scene_drawing(scene, theme=theme)
+    unit = start.unit
+    steps = replay(scene, plan)
+    if not steps:
+        return start
+    carries = [(scene.objects[step.carried], step) for step in steps if step.carried is not None]
+    places = placements(carries)
+    end = agent_shape(scene, steps[-1].segment.path[-1], unit, theme)
+    items: list[Item] = [_ghost(end, theme)]
+    for place in places:
+        color = object_color(scene, place.body, theme)
+        items.append(_ghost(body_shape(place.body, color, unit, theme, place.position), theme))
+    for body, step in carries:
+        items += _carry_path(step.segment.path, object_color(scene, body, theme), unit, theme)
+    for step in steps:
+        if step.carried is None:
+            items += _move_path(step.segment.path, unit, theme)
+    for place in places:
+        items += _badge(place, object_color(scene, place.body, theme), unit, theme)
+    return replace(start, items=(*start.items, *items))
+
+
+def placements(carries: list[tuple[Body, Step]]) -> list[Placement]:
+    """Where carries, each with its object, end; those of one object at one place are one."""
+    found: list[Placement] = []
+    for number, (body, step) in enumerate(carries, start=1):
+        position = step.segment.path[-1] + step.offset
+        for i, place in enumerate(found):
+            if place.body is body and np.hypot(*(place.position - position)) < SAME_PLACE:
+                found[i] = replace(place, numbers=(*place.numbers, number))
+                break
+        else:
+            found.append(Placement(body, position, (number,)))
+    return found
+
+
+def _ghost(shape: Shape, theme: Theme) -> Shape:
+    return replace(
+        shape,
+        fill_opacity=theme.ghost_opacity,
+        outline=mixed(shape.fill, theme.outline, GHOST_SHADE),
+        outline_width=0.8 * shape.outline_width,
+    )
+
+
+def _carry_path(path: FloatArray, color: Color, unit: float, theme: Theme) -> list[Item]:
+    width = theme.carry_width * unit
+    casing = mixed(color, theme.outline, GHOST_SHADE)
+    arrow = _arrow(path, 2 * ARROW_LENGTH * unit)
+    return [
+        Line(path, width + 2 * CASING * unit, casing),
+        Line(path, width, color),
+        *(Shape((head,), color, outline=casing, outline_width=CASING * unit) for head in arrow),
+    ]
+
+
+def _move_path(path: FloatArray, unit: float, theme: Theme) -> list[Item]:
+    heads = [Shape((head,), theme.move) for head in _arrow(path, ARROW_LENGTH * unit)]
+    return [Line(path, theme.move_width * unit, theme.move), *heads]
+
+
+def _arrow(path: FloatArray, length: float) -> list[Rounded]:
+    """An arrow head of `length` [m] in the middle of a path; none if the path is too short for one."""
+    total = float(np.hypot(*np.diff(path, axis=0).T).sum())
+    if total < 3 * length:
+        return []
+    middle, ahead = points_along(path, np.array([total / 2 - length / 4, total / 2 + length / 4]))
+    heading = float(np.arctan2(*(ahead - middle)[::-1]))
+    return [Rounded(middle + length * ARROW @ rotation(heading), 0.0)]
+
+
+def _badge(place: Placement, color: Color, unit: float, theme: Theme) -> list[Item]:
+    """The numbers of a placement on a plate at its centre."""
+    shown = [str(number) for number in place.numbers[:LABELLED]]
+    text = ",".join(shown) + ("…" if len(place.numbers) > LABELLED else "")
+    height = theme.text_height * unit
+    half_width = np.array([(len(text) - 1) * 0.25 * height, 0.0])
+    plate = Rounded(np.array([place.position - half_width, place.position + half_width]), 0.6 * height)
+    outline = mixed(color, theme.outline, GHOST_SHADE)
+    return [
+        Shape((plate,), theme.badge, outline=outline, outline_width=theme.outline_width * unit),
+        Label(text, place.position, height, theme.outline),
+    ]

@@ -1,0 +1,94 @@
+"""Pictures of scenes: floor, goal, walls, objects and agent in their true shapes, seen from above."""
+
+import numpy as np
+
+from converter.drawing import Drawing, Item, Rounded, Shape, box, disc, extent, footprint
+from converter.raster import Image, paint
+from converter.scene import Body, Scene
+from converter.shape import FloatArray
+from converter.theme import PAPER, Color, Theme
+
+SUBGOAL_RADIUS = 3.0
+"""Radius of the dot of a subgoal, in units of the picture."""
+
+
+def draw_scene(scene: Scene, width_px: int = 600, *, subgoals: FloatArray | None = None, theme: Theme = PAPER) -> Image:
+    """The scene as an image.
+
+    Args:
+        scene: The scene.
+        width_px: Width of the image.
+        subgoals: (n, 2) [m], world: positions that are marked with dots.
+        theme: Colours and line widths.
+
+    Raises:
+        InputError: the image would be too large.
+    """
+    return paint(scene_drawing(scene, subgoals=subgoals, theme=theme), width_px)
+
+
+def scene_drawing(scene: Scene, *, subgoals: FloatArray | None = None, theme: Theme = PAPER) -> Drawing:
+    """The scene at its start; `subgoals` (n, 2) [m] are marked with dots."""
+    empty = room_drawing(scene, theme)
+    unit = empty.unit
+    movable = [body_shape(body, object_color(scene, body, theme), unit, theme) for body in scene.objects]
+    agent = agent_shape(scene, scene.agent.position, unit, theme)
+    dots = [_subgoal_dot(scene, position, unit, theme) for position in (() if subgoals is None else subgoals)]
+    return Drawing(empty.lower, empty.upper, empty.background, (*empty.items, *movable, agent, *dots))
+
+
+def room_drawing(scene: Scene, theme: Theme) -> Drawing:
+    """What never moves: floor, goal and walls."""
+    lower, upper = _room(scene)
+    unit = float((upper - lower).max()) / 600
+    items: list[Item] = [
+        Shape((box((lower + upper) / 2, upper - lower),), theme.floor),
+        Shape(
+            (box(scene.goal.position, scene.goal.size),),
+            theme.goal,
+            outline=theme.goal_dark,
+            outline_width=theme.outline_width * unit,
+        ),
+    ]
+    if scene.walls:
+        parts = tuple(part for wall in scene.walls for part in footprint(wall))
+        items.append(Shape(parts, theme.wall, outline=theme.wall_dark, outline_width=theme.outline_width * unit))
+    margin = 2 * theme.outline_width * unit
+    return Drawing(lower - margin, upper + margin, theme.page, tuple(items))
+
+
+def body_shape(body: Body, color: Color, unit: float, theme: Theme, position: FloatArray | None = None) -> Shape:
+    """An object at its own position or at `position` (2,) [m]; `unit` is that of the drawing."""
+    return _outlined(footprint(body, position), color, unit, theme)
+
+
+def agent_shape(scene: Scene, position: FloatArray, unit: float, theme: Theme) -> Shape:
+    """The agent at `position` (2,) [m]; `unit` is that of the drawing."""
+    return _outlined((disc(position, scene.agent.radius),), theme.agent, unit, theme)
+
+
+def object_color(scene: Scene, body: Body, theme: Theme) -> Color:
+    """The object's own colour, or the theme's for the goal-object or for an obstacle with its place in the scene."""
+    if body.color is not None:
+        return body.color
+    if body.name == scene.goal.object:
+        return theme.goal_object
+    obstacles = [name for name in scene.object_names if name != scene.goal.object]
+    return theme.obstacles[obstacles.index(body.name) % len(theme.obstacles)]
+
+
+def _outlined(parts: tuple[Rounded, ...], color: Color, unit: float, theme: Theme) -> Shape:
+    return Shape(parts, color, outline=theme.outline, outline_width=theme.outline_width * unit)
+
+
+def _subgoal_dot(scene: Scene, position: FloatArray, unit: float, theme: Theme) -> Shape:
+    color = object_color(scene, scene.goal_object, theme)
+    return Shape((disc(position, SUBGOAL_RADIUS * unit),), color, outline=theme.badge, outline_width=unit)
+
+
+def _room(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """Lower and upper corner (2,) [m] of what the picture has to show."""
+    bodies = [extent(footprint(body)) for body in (*scene.walls, *scene.objects)]
+    agent = extent((disc(scene.agent.position, scene.agent.radius),))
+    corners = np.concatenate([scene.bounds, *bodies, agent, extent((box(scene.goal.position, scene.goal.size),))])
+    return corners.min(axis=0), corners.max(axis=0)
