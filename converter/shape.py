@@ -30,6 +30,12 @@ def frozen_array(values: npt.ArrayLike, shape: tuple[int | None, ...]) -> FloatA
     return array
 
 
+def denoised(values: npt.ArrayLike) -> FloatArray:
+    """`values` rounded to 1e-12: sums of decimal numbers without the noise of floating-point arithmetic."""
+    # Adding 0.0 turns -0.0 into 0.0.
+    return np.asarray(np.round(np.asarray(values, dtype=np.float64), 12) + 0.0, dtype=np.float64)
+
+
 def rotation(yaw: float) -> FloatArray:
     """The (2, 2) matrix that turns a row vector counter-clockwise by `yaw` [rad]: `points @ rotation(yaw)`."""
     c, s = np.cos(yaw), np.sin(yaw)
@@ -91,9 +97,24 @@ class Part:
         return 2 * (float(hx) + self.edge_radius), 2 * (float(hy) + self.edge_radius)
 
     def with_edge_radius(self, edge_radius: float) -> Self:
-        """A box keeps its outer size; another polygon keeps its core, so its outline moves by the difference."""
-        size = self.box_size
-        return type(self)(self.core, edge_radius) if size is None else type(self).box(size, edge_radius)
+        """The part with rounder or sharper corners; the straight edges of its outline stay where they are.
+
+        Discs and capsules, which are round by their nature, stay as they are.
+
+        Raises:
+            ValueError: the part is too thin for the radius.
+        """
+        if len(self.core) < 3:
+            return self
+        edges = np.roll(self.core, -1, axis=0) - self.core
+        inward = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / np.hypot(*edges.T)[:, np.newaxis]
+        before = np.roll(inward, 1, axis=0)
+        # A vertex moves along the bisector of its edges, so that both come in by the change of the radius.
+        step = (edge_radius - self.edge_radius) / (1 + (inward * before).sum(axis=1))
+        core = self.core + step[:, np.newaxis] * (inward + before)
+        if (((np.roll(core, -1, axis=0) - core) * edges).sum(axis=1) <= 0).any():
+            raise ValueError(f"the part is too thin for an edge radius of {edge_radius}")
+        return type(self)(core, edge_radius)
 
 
 def _require_convex(core: FloatArray) -> None:

@@ -20,7 +20,7 @@ from converter.formats.body_document import MAX_LENGTH
 from converter.formats.rai_pose import IDENTITY, Pose, frame_pose
 from converter.formats.rai_text import Frame, read_frames
 from converter.scene import Agent, Body, Goal, Scene
-from converter.shape import FloatArray, Part, rotation
+from converter.shape import FloatArray, Part, denoised, rotation
 from pcg.errors import InputError
 
 TOLERANCE = 1e-3
@@ -29,8 +29,6 @@ TOLERANCE = 1e-3
 _NEVER_COLLIDING = frozenset({"floor", "goal", "goal_visible", "goalLarge", "goalSmall", "sub-goal1"})
 _SIZE_COUNTS = {"ssBox": 4, "box": 3, "ssCylinder": 3, "cylinder": 2}
 _ALIGNED = 1e-9
-_DECIMALS = 12
-"""Sums of decimal numbers are rounded to so many places, which removes the noise of floating-point arithmetic."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +113,7 @@ class _Tree:
             mover = step if step.attributes.get("joint", "none") != "none" else outer.mover
             self._placed[step.name] = _Placed(outer.pose @ frame_pose(step), mover)
         found = self._placed[frame.name]
-        translation = np.round(found.pose.translation - self._ground, _DECIMALS)
+        translation = denoised(found.pose.translation - self._ground)
         if np.abs(translation).max() > MAX_LENGTH:
             raise InputError(frame.where, f"{frame.name}: farther than {MAX_LENGTH:g} m from the origin")
         return _Placed(Pose(translation, found.pose.yaw), found.mover)
@@ -171,7 +169,7 @@ def _joint(mover: Frame | None) -> str:
 
 
 def _bounds(floor: _Solid) -> FloatArray:
-    return np.round(floor.placed.pose.translation[:2] + np.outer([-0.5, 0.5], _aligned_size(floor)), _DECIMALS)
+    return denoised(floor.placed.pose.translation[:2] + np.outer([-0.5, 0.5], _aligned_size(floor)))
 
 
 def _agent(solids: Sequence[_Solid], file: str) -> Agent:
@@ -181,7 +179,7 @@ def _agent(solids: Sequence[_Solid], file: str) -> Agent:
     if len(solid.part.core) > 1:
         raise InputError(solid.frame.where, f"{solid.frame.name}: the agent must be an upright cylinder")
     # The agent is taken to reach down to the floor.
-    height = round(solid.bottom_top[1], _DECIMALS)
+    height = float(denoised(solid.bottom_top[1]))
     if height <= 0:
         raise InputError(solid.frame.where, f"{solid.frame.name}: the agent is below the floor")
     return Agent(solid.placed.pose.translation[:2], solid.part.edge_radius, height)
@@ -208,7 +206,7 @@ def _body(frame: Frame, pose: Pose, solids: Sequence[_Solid]) -> Body:
 def _moved(part: Part, pose: Pose) -> Part:
     if pose.yaw == 0 and not pose.translation[:2].any():
         return part
-    return Part(np.round(part.core @ rotation(pose.yaw) + pose.translation[:2], _DECIMALS), part.edge_radius)
+    return Part(denoised(part.core @ rotation(pose.yaw) + pose.translation[:2]), part.edge_radius)
 
 
 def _color(frame: Frame) -> tuple[float, float, float] | None:
@@ -231,4 +229,4 @@ def _aligned_size(solid: _Solid) -> FloatArray:
     size = solid.part.box_size
     if size is None or abs(solid.placed.pose.yaw) > _ALIGNED:
         raise InputError(solid.frame.where, f"{solid.frame.name}: must be a box that is aligned with the axes")
-    return np.round(np.array(size), _DECIMALS)
+    return denoised(size)
