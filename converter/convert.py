@@ -23,7 +23,7 @@ from pcg.errors import InputError
 from pcg.grid import Cell
 from pcg.level import Level
 from pcg.metrics import occluded as level_occluded
-from pcg.solver import SolverStatus, solve
+from pcg.solver import SolverStatus, goal_crate_of, solve
 
 FLOOR_MARGIN = 0.05
 """How far the floor and the outer walls reach beyond the border of the grid [m]."""
@@ -105,12 +105,13 @@ def _choose_goal_crate(level: Level) -> _Choice:
     if level.goal_crate is not None:
         return _Choice(level.goal_crate, "level", solvable=None)
     solution = solve(level)
-    if solution.goal_crate is not None:
-        return _Choice(solution.goal_crate, "solution", solvable=True)
+    crate = goal_crate_of(level, solution)
+    if solution.solved:
+        return _Choice(crate, "solution", solvable=True)
     unsolvable = solution.status is SolverStatus.UNSOLVABLE
     reason = "the level is unsolvable" if unsolvable else "the solver gave up"
     _logger.warning("%s: %s, so the first crate becomes the goal-object", level.name or "level", reason)
-    return _Choice(level.crates[0], "first crate", solvable=False if unsolvable else None)
+    return _Choice(crate, "first crate", solvable=False if unsolvable else None)
 
 
 def _scene(level: Level, goal_crate: Cell, settings: ConversionSettings, preset: Preset) -> Scene:
