@@ -20,7 +20,7 @@ from pcg.metrics import LevelStatistics, occluded, statistics
 from pcg.report import LevelReport, LevelsSummary, report_levels, summarise
 from pcg.sokoban import IllegalMoveError, apply_moves, is_solved
 from pcg.solver import Solution, SolverStatus, goal_crate_of, solve
-from pcg.symmetry import canonical, content_hash, symmetries
+from pcg.symmetry import canonical, content_hash, symmetries, tiles_hash
 from pcg.xsb import format_level, parse_levels, read_levels, write_levels
 
 __all__ = [
@@ -56,6 +56,7 @@ __all__ = [
     "statistics",
     "summarise",
     "symmetries",
+    "tiles_hash",
     "write_level_set",
     "write_levels",
 ]

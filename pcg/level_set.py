@@ -4,7 +4,6 @@
 fields. XSB cannot say which crate has to reach the goal, the manifest can: whoever reads the levels gets it from there.
 """
 
-import hashlib
 import json
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -19,7 +18,7 @@ from pcg.files import read_text, write_text
 from pcg.level import Level
 from pcg.metrics import LevelStatistics, occluded, statistics
 from pcg.solver import Solution, goal_crate_of
-from pcg.symmetry import content_hash
+from pcg.symmetry import content_hash, tiles_hash
 from pcg.validation import Document, validated
 from pcg.xsb import read_levels, write_levels
 
@@ -121,7 +120,7 @@ def manifest_entry(generated: GeneratedLevel) -> ManifestEntry:
         solution=solution.lurd,
         goal_crate=goal_crate,
         content_hash=content_hash(level),
-        tiles_hash=_tiles_hash(level),
+        tiles_hash=tiles_hash(level),
     )
 
 
@@ -181,13 +180,9 @@ def read_manifest(path: Path) -> list[ManifestEntry]:
 
 
 def _with_recorded_goal(level: Level, entry: ManifestEntry | None, manifest: Path) -> Level:
-    if entry is None or entry.tiles_hash != _tiles_hash(level):
+    if entry is None or entry.tiles_hash != tiles_hash(level):
         return level
     try:
         return replace(level, goal_crate=entry.goal_crate)
     except ValueError as error:
         raise InputError(str(manifest), f"level {level.name!r}: goal_crate: {error}") from None
-
-
-def _tiles_hash(level: Level) -> str:
-    return hashlib.sha256(repr((level.shape, level.tiles.tobytes())).encode()).hexdigest()[:16]

@@ -1,0 +1,240 @@
+from collections import deque
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pcg.grid import DIRECTIONS, Cell, cells_of, shortest_walk
+from pcg.level import Level
+from pcg.sokoban import apply_moves, is_solved
+from pcg.solver import MAX_CELLS, Solution, SolverStatus, goal_crate_of, solve
+from pcg.symmetry import symmetries
+from pcg.xsb import parse_levels
+
+
+def fewest_pushes(level: Level) -> int | None:
+    """The least number of pushes, by visiting every position of player and crates; None if no solution exists."""
+    floor, targets, first = set(cells_of(~level.is_wall)), set(level.targets), level.targets[0]
+    start = (level.player, level.goal_crate, frozenset(level.crates))
+    least = {start: 0}
+    queue = deque([start])
+    while queue:
+        position = queue.popleft()
+        player, goal, crates = position
+        if targets <= crates and (goal is None or goal == first):
+            return least[position]
+        for down, right in DIRECTIONS.values():
+            ahead, beyond = (player[0] + down, player[1] + right), (player[0] + 2 * down, player[1] + 2 * right)
+            push = ahead in crates
+            if ahead not in floor or (push and (beyond not in floor or beyond in crates)):
+                continue
+            after = (ahead, beyond if push and ahead == goal else goal, crates - {ahead} | {beyond} if push else crates)
+            cost = least[position] + push
+            if cost < least.get(after, cost + 1):
+                least[after] = cost
+                # Walking is free, so its positions come before those that wait for a push.
+                (queue.append if push else queue.appendleft)(after)
+    return None
+
+
+@st.composite
+def playable_levels(draw: st.DrawFn) -> Level:
+    """Small levels with walls, surplus crates, covered targets and named goal crates."""
+    rows, columns = draw(st.integers(1, 4)), draw(st.integers(3, 5))
+    cells = draw(st.permutations(list(np.ndindex(rows, columns))))
+    crates = draw(st.integers(1, 3 if rows > 1 else 2))
+    targets = draw(st.integers(1, min(2, crates)))
+    walls = draw(st.integers(0, max(0, len(cells) - 2 - crates - targets) // 2))
+    is_wall = np.zeros((rows, columns), dtype=bool)
+    for cell in cells[:walls]:
+        is_wall[cell] = True
+    player, *placed = cells[walls : walls + 1 + crates]
+    target_cells = draw(st.permutations(cells[walls:]))[:targets]
+    goal = draw(st.sampled_from([None, *placed]))
+    return Level.of(is_wall, players=[player], crates=placed, targets=target_cells, goal_crate=goal)
+
+
+def check(level: Level, solution: Solution) -> None:
+    """A solution replays, is as long as it says, and its goal crate ends on the first target."""
+    assert solution.lurd is not None
+    assert solution.pushes == sum(letter.isupper() for letter in solution.lurd)
+    assert solution.moves == len(solution.lurd)
+    assert is_solved(apply_moves(level, solution.lurd))
+    assert is_solved(apply_moves(replace(level, goal_crate=solution.goal_crate), solution.lurd))
+
+
+@settings(max_examples=400, deadline=None)
+@given(playable_levels())
+def test_agrees_with_a_search_over_raw_moves(level: Level):
+    """Solvability and the number of pushes are those of a search without regions or pruning."""
+    solution = solve(level)
+    expected = fewest_pushes(level)
+    assert solution.pushes == expected
+    assert solution.status is (SolverStatus.UNSOLVABLE if expected is None else SolverStatus.SOLVED)
+    if solution.solved:
+        check(level, solution)
+
+
+@pytest.mark.parametrize(
+    ("shape", "crates", "targets"), [((6, 6), 2, 1), ((6, 6), 1, 1), ((4, 5), 3, 2), ((4, 5), 2, 2)]
+)
+@pytest.mark.parametrize("named", ["any crate", "first crate"])
+def test_agrees_with_a_search_over_raw_moves_in_wider_rooms(shape: Cell, crates: int, targets: int, named: str):
+    """The same in wider rooms, where solutions are longer."""
+    rng = np.random.default_rng(1)
+    solved = 0
+    for _ in range(20):
+        is_wall = rng.random(shape) < 0.15
+        player, *free = map(tuple, rng.permutation(np.argwhere(~is_wall)).tolist())
+        level = Level.of(
+            is_wall,
+            players=[player],
+            crates=free[:crates],
+            targets=free[crates : crates + targets],
+            goal_crate=free[0] if named == "first crate" else None,
+        )
+        solution = solve(level)
+        assert solution.pushes == fewest_pushes(level)
+        if solution.solved:
+            solved += 1
+            check(level, solution)
+    assert solved >= 2
+
+
+@settings(max_examples=50, deadline=None)
+@given(playable_levels())
+def test_symmetric_levels_need_as_many_pushes(level: Level):
+    """Turning or mirroring a level with its goal crate named changes nothing."""
+    goal = level.goal_crate or level.crates[0]
+    # With one target its place in reading order cannot change.
+    level = Level.of(
+        level.is_wall, players=level.players, crates=level.crates, targets=level.targets[:1], goal_crate=goal
+    )
+    assert len({solve(image).pushes for image in symmetries(level)}) == 1
+
+
+def test_a_surplus_crate_may_stand_on_a_dead_cell():
+    """A crate in a corner is lost, but the other one can still cover the only target."""
+    (level,) = parse_levels(
+        """
+        #######
+        #$ @$.#
+        #######
+        """,
+        "test.xsb",
+    )
+    solution = solve(level)
+    assert (solution.pushes, solution.lurd, solution.goal_crate) == (1, "R", (0, 3))
+    assert solve(level, goal_crate=(0, 0)).status is SolverStatus.UNSOLVABLE
+
+
+def test_a_surplus_crate_may_be_pushed_into_a_corner():
+    """The way is cleared by pushing a crate where it is lost for good."""
+    (level,) = parse_levels(
+        """
+        ########
+        #@$ #  #
+        ### $ .#
+        ########
+        """,
+        "test.xsb",
+    )
+    assert solve(level).pushes == fewest_pushes(level)
+
+
+def test_the_goal_crate_has_to_be_on_the_first_target():
+    """Of two targets, the upper one is the goal crate's, even where exchanging the crates is far."""
+    (level,) = parse_levels(
+        """
+        #######
+        #  .  #
+        #  $  #
+        # @   #
+        #  $  #
+        #  .  #
+        #######
+        """,
+        "test.xsb",
+    )
+    upper, lower = level.crates
+    assert solve(level).pushes == solve(level, goal_crate=upper).pushes == 2
+    exchanged = solve(level, goal_crate=lower)
+    assert exchanged.pushes == fewest_pushes(replace(level, goal_crate=lower))
+    assert exchanged.pushes > 2
+    assert exchanged.goal_crate == lower
+
+
+def test_the_argument_overrides_the_levels_goal_crate():
+    """The goal crate of the level holds unless another one is given."""
+    (level,) = parse_levels("#######\n#.$@$ #\n#######", "test.xsb")
+    named = replace(level, goal_crate=(0, 3))
+    assert solve(named).status is SolverStatus.UNSOLVABLE
+    assert solve(named, goal_crate=(0, 1)).pushes == 1
+
+
+def test_a_solved_level_needs_no_push():
+    """Nothing has to be done where every target is covered."""
+    solution = solve(parse_levels("####\n#@*#\n####", "test.xsb")[0])
+    assert (solution.status, solution.pushes, solution.moves, solution.lurd) == (SolverStatus.SOLVED, 0, 0, "")
+    assert solution.goal_crate == (0, 1)
+
+
+def test_fewer_crates_than_targets_are_unsolvable():
+    """Two targets cannot be covered by one crate."""
+    assert solve(Level(np.array([[2, 3, 4, 4]]))).solvable is False
+
+
+def test_the_limit_is_never_taken_for_unsolvable():
+    """A search that is cut short says so; with enough states the same level is decided."""
+    (level,) = parse_levels("########\n#@     #\n# $  $ #\n#     .#\n########", "test.xsb")
+    needed = solve(level).states
+    assert solve(level, max_states=needed).solved
+    cut = solve(level, max_states=2)
+    assert cut.status is SolverStatus.LIMIT
+    assert cut.solvable is None
+    assert cut.pushes is None
+
+
+def test_huge_levels_are_left_undecided():
+    """A board beyond the largest is not searched."""
+    tiles = np.zeros((1, MAX_CELLS + 1), dtype=np.uint8)
+    tiles[0, :4] = [2, 3, 0, 4]
+    assert solve(Level(tiles)).status is SolverStatus.LIMIT
+
+
+def test_walks_between_pushes_are_shortest():
+    """No walk between two pushes is longer than it must be."""
+    (level,) = parse_levels("#######\n#     #\n# #$# #\n#  @  #\n# #.# #\n#######", "test.xsb")
+    solution = solve(level)
+    assert solution.pushes == 2
+    walk = solution.lurd[: solution.lurd.index("D")]
+    assert len(walk) == len(shortest_walk(~(level.is_wall | level.is_crate), level.player, (0, 2)))
+
+
+@pytest.mark.parametrize(
+    ("tiles", "goal", "problem"),
+    [([[3, 4]], None, "0 players"), ([[2, 3]], None, "no target"), ([[2, 3, 4]], (0, 2), "not a crate")],
+)
+def test_unusable_arguments_are_refused(tiles: list[list[int]], goal: Cell | None, problem: str):
+    """A level needs one player and a target, and the goal crate must be a crate."""
+    with pytest.raises(ValueError, match=problem):
+        solve(Level(np.array(tiles)), goal_crate=goal)
+
+
+@pytest.mark.parametrize(
+    ("row", "goal", "expected"),
+    [("$@$.", None, (0, 2)), ("$@$.", (0, 0), (0, 0)), ("$ $@ .", None, (0, 0))],
+)
+def test_choice_of_the_goal_crate(row: str, goal: Cell | None, expected: Cell):
+    """The named crate, else the one that the solution brings to the target, else the first in reading order."""
+    wall = "#" * (len(row) + 2)
+    level = replace(parse_levels(f"{wall}\n#{row}#\n{wall}", "test.xsb")[0], goal_crate=goal)
+    assert goal_crate_of(level, solve(level)) == expected
+
+
+def test_no_goal_crate_without_crates():
+    """A level without crates has no goal crate."""
+    with pytest.raises(ValueError, match="no crate"):
+        goal_crate_of(Level(np.array([[2, 4]])), Solution(SolverStatus.UNSOLVABLE))
