@@ -161,7 +161,7 @@ class Level:
         """
         players, crates, targets = (len(cells) for cells in (self.players, self.crates, self.targets))
         if players != 1:
-            raise InputError(where, f"the level has {players or 'no'} players; one is allowed")
+            raise InputError(where, f"the level has {players or 'no'} players; exactly one is needed")
         if targets == 0:
             raise InputError(where, "the level has no target; at least one is needed")
         if crates < targets:

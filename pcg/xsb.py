@@ -1,15 +1,15 @@
 """Reading and writing levels as XSB text, the format that every Sokoban tool knows.
 
 `#` wall, space, `-` or `_` floor, `@` player, `+` player on target, `$` crate, `*` crate on target, `.` target. A level
-is a block of lines that begin with a wall, after any floor; a blank or any other line ends it. All other lines are
-text. Two kinds of text name a level, and the first of these found is its name:
+is a block of lines that begin with a wall, after any floor, or hold nothing but the characters above; a blank or any
+other line ends it. All other lines are text. Two kinds of text name a level, and the first of these found is its name:
 
 1. a `Title:` line below the level, with no blank line between them and the level;
 2. the last `; name` line above it, again with no blank line between (Boxoban);
 3. the first `; name` line below it, again with no blank line between;
 4. the last `; name` line anywhere between the level before and this one (Microban).
 
-A line names one level only. A level without a name is called after the file and its number, counted from 1: `file-1`.
+In 2 to 4 a `Title:` line will do too. A line names one level only. A level without a name is called after the file and its number, counted from 1: `file-1`.
 """
 
 import re
@@ -102,11 +102,8 @@ def parse_levels(text: str, where: str) -> list[Level]:
         if cells > MAX_CELLS:
             raise InputError(_at(where, block.line), f"the levels have more than {MAX_CELLS} cells")
         name = block.name or _as_name(f"{Path(where).stem}-{number}")
-        if name in lines_of_names:
-            raise InputError(
-                _at(where, block.line), f"name {name!r} is taken by the level at line {lines_of_names[name]}"
-            )
-        lines_of_names[name] = block.line
+        if (first := lines_of_names.setdefault(name, block.line)) != block.line:
+            raise InputError(_at(where, block.line), f"name {name!r} is taken by the level at line {first}")
         levels.append(replace(level, name=name))
     if not levels:
         raise InputError(where, "no level found: no line begins with a wall '#'")
@@ -157,13 +154,14 @@ def _as_name(text: str) -> str:
 def _level(block: _Block, where: str) -> Level:
     tiles = _tiles(block, where)
     # The ring of floor around the rows joins all that is outside.
-    outside = reachable(tiles != Tile.WALL, [(0, 0)])
-    for row, column in cells_of(outside & (tiles != Tile.FLOOR)):
+    is_wall = tiles == Tile.WALL
+    outside = reachable(~is_wall, [(0, 0)])
+    if lost := cells_of(outside & (tiles != Tile.FLOOR)):
+        row, column = lost[0]
         thing = Tile(tiles[row, column]).name.lower().replace("_", " ")
-        raise InputError(
-            _at(where, block.line + row - 1), f"the {thing} in column {column} of the level is not enclosed by walls"
-        )
-    rows, columns = np.nonzero((tiles == Tile.WALL).any(axis=1))[0], np.nonzero((tiles == Tile.WALL).any(axis=0))[0]
+        problem = f"the {thing} in column {column} is not enclosed by walls"
+        raise InputError(_at(where, block.line + row - 1), problem)
+    rows, columns = (np.flatnonzero(is_wall.any(axis=axis)) for axis in (1, 0))
     inner = np.where(outside, Tile.WALL, tiles)[rows[0] + 1 : rows[-1], columns[0] + 1 : columns[-1]]
     if inner.size == 0:
         raise InputError(_at(where, block.line), "the walls enclose no cell")
@@ -177,9 +175,8 @@ def _tiles(block: _Block, where: str) -> TileArray:
     rows = [row.rstrip(" -_") for row in block.rows]
     columns = max(map(len, rows))
     if max(len(rows), columns) > MAX_SIDE:
-        raise InputError(
-            _at(where, block.line), f"the level has {len(rows)} x {columns} cells; at most {MAX_SIDE} x {MAX_SIDE}"
-        )
+        problem = f"the level has {len(rows)} x {columns} cells; at most {MAX_SIDE} x {MAX_SIDE} are read"
+        raise InputError(_at(where, block.line), problem)
     tiles = np.full((len(rows) + 2, columns + 2), Tile.FLOOR, dtype=np.uint8)
     for i, row in enumerate(rows):
         if unknown := set(row) - _TILES.keys():

@@ -90,7 +90,7 @@ def test_enclosed_floor_out_of_reach_stays_floor():
         ("\n" + A.replace("$", "B"), "file.xsb: line 3: column 3 holds 'B'; allowed are # "),
         (A + "\t#", r"line 3: column 6 holds '\\t'"),
         ("\t" + A, r"line 1: column 1 holds '\\t'"),
-        ("####\n#@$.\n####", "line 2: the player in column 2 of the level is not enclosed by walls"),
+        ("####\n#@$.\n####", "line 2: the player in column 2 is not enclosed by walls"),
         ("## ##\n#@$.#\n#####", "line 2: the player in column 2"),
         (" @$.", "line 1: the player in column 2"),
         (A + "\n#   $", "line 4: the crate in column 5"),
