@@ -9,7 +9,8 @@ other line ends it. All other lines are text. Two kinds of text name a level, an
 3. the first `; name` line below it, again with no blank line between;
 4. the last `; name` line anywhere between the level before and this one (Microban).
 
-In 2 to 4 a `Title:` line will do too. A line names one level only. A level without a name is called after the file and its number, counted from 1: `file-1`.
+In 2 to 4 a `Title:` line will do too. A line names one level only. A level without a name is called after the file and
+its number, counted from 1: `file-1`.
 """
 
 import re
