@@ -66,7 +66,7 @@ class Search:
         self.counters: Counter[str] = Counter()
         self._frontier = Frontier(settings)
         self._rejection = Rejection(settings)
-        self._solver_for = subproblem_solvers(problem, settings, rng, self.counters)
+        self._solver_for = subproblem_solvers(problem, settings, rng, self.counters, self._out_of_budget)
         self._started = time.perf_counter()
         self._should_stop = should_stop
 

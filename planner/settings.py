@@ -28,6 +28,8 @@ class Settings:
         placement_samples: Placements tried in a region, its centre first.
         reach_iterations: Iterations of RRT-Connect for the question whether an object can be reached.
         motion_iterations: Iterations of RRT-Connect for a motion between switch configurations.
+        motion_attempts: Switch configurations of one subproblem for which motions are sought.
+        shortcut_rounds: Random shortcuts tried on a path of RRT-Connect.
         equal_configurations: Configurations with equal discretised object positions that rejection lets pass.
         rejection_cell: Edge of the cells in which rejection compares object positions [m].
         expansions: How often one configuration may be expanded.
@@ -44,6 +46,8 @@ class Settings:
     placement_samples: int = 8
     reach_iterations: int = 20_000
     motion_iterations: int = 20_000
+    motion_attempts: int = 2
+    shortcut_rounds: int = 30
     equal_configurations: int = 2
     rejection_cell: float = 0.1
     expansions: int = 2

@@ -15,8 +15,19 @@ SolverForConfiguration = Callable[[Configuration], PickPlaceSolver]
 
 
 def subproblem_solvers(
-    problem: Problem, settings: Settings, rng: np.random.Generator, counters: Counter[str]
+    problem: Problem,
+    settings: Settings,
+    rng: np.random.Generator,
+    counters: Counter[str],
+    should_stop: Callable[[], bool],
 ) -> SolverForConfiguration:
     """Makes a subproblem solver for a configuration; what depends on the scene alone is computed once."""
     curves = [ContactCurve(body, problem.scene.agent.radius) for body in problem.scene.objects]
-    return lambda configuration: ExactPickPlace(problem, curves, configuration, settings, rng, counters)
+    if settings.preset == "fast":
+        return lambda configuration: ExactPickPlace(problem, curves, configuration, settings, rng, counters)
+    # CasADi and OMPL take half a second to import, which the fast preset need not pay.
+    from planner.pick_place_sampled import SampledPickPlace  # noqa: PLC0415  # see above
+
+    return lambda configuration: SampledPickPlace(
+        problem, curves, configuration, settings, rng, counters, should_stop
+    )

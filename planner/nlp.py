@@ -1,0 +1,196 @@
+"""The switch-configuration problem as a nonlinear program in CasADi.
+
+A pick-and-place of one object switches modes twice, at the grasp and at the release. Between them the offset of agent
+and object is constant, so two points describe both switches: the agent's centre a at the pick and the object's centre
+z at the placement. With p the object's position before, s_B the signed distance to the core polygon of B and rho the
+radii as in `planner.configuration_space`:
+
+    minimise    |a - a_0|^2 + |z - z_0|^2
+    subject to  min over parts B of the object of s_B(a - p) = rho_B          touch
+                s_k(a) >= rho_k            for all obstacles k of the agent   no penetration at the pick
+                s_k(a + z - p) >= rho_k    for all obstacles k of the agent   no penetration at the placement
+                s_j(z) >= rho_j            for all obstacles j of the object
+                lower <= z <= upper                                           placement in the region
+
+(a_0, z_0) is a randomised start. Polygons are parameters: a program is built once per structure, which is the number
+of polygons and of vertices, and solved for any positions. Polygons with fewer vertices repeat their last one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from converter.shape import FloatArray
+from planner.configuration_space import ObstacleSet
+
+FAR = 1e3
+"""Stands for the distance to an edge without length [m]."""
+
+MARGIN = 1e-6
+"""Asked of every clearance beyond its bound [m], so that what the optimiser leaves violated is still free."""
+
+TOUCH_GAP = 5e-7
+"""Gap of a touching grasp [m], the middle of what a plan may have beside the tolerance."""
+
+_IPOPT_OPTIONS: dict[str, Any] = {
+    "expand": True,
+    "error_on_fail": False,
+    "print_time": False,
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.max_iter": 60,
+    "ipopt.hessian_approximation": "limited-memory",
+    "ipopt.tol": 1e-7,
+}
+
+
+@dataclass(frozen=True)
+class PolygonBlock:
+    """How many polygons a set has, and how many vertices the largest of them."""
+
+    polygons: int
+    vertices: int
+
+    @classmethod
+    def of(cls, obstacles: ObstacleSet) -> "PolygonBlock":
+        """The structure of an obstacle set."""
+        return cls(len(obstacles), int(np.diff(obstacles.first).max(initial=1)))
+
+    @property
+    def size(self) -> int:
+        """Numbers that describe such a set: vertices and radii."""
+        return self.polygons * (2 * self.vertices + 1)
+
+    def pack(self, obstacles: ObstacleSet) -> FloatArray:
+        """The (size,) parameters of an obstacle set: all vertices, padded, then all radii."""
+        counts = np.diff(obstacles.first)
+        rows = obstacles.first[:-1, None] + np.minimum(np.arange(self.vertices), counts[:, None] - 1)
+        return np.concatenate([obstacles.vertices[rows].ravel(), obstacles.rho])
+
+
+@dataclass(frozen=True)
+class SwitchStructure:
+    """What a program is built for; positions and shapes are parameters."""
+
+    parts: PolygonBlock
+    agent_obstacles: PolygonBlock
+    object_obstacles: PolygonBlock
+
+
+@dataclass(frozen=True, eq=False)
+class SwitchProgram:
+    """The program of a structure, symbolically.
+
+    Attributes:
+        x: (4,) variables a and z.
+        p: Parameters: start (4,), object position (2,), then the three packed polygon sets.
+        cost: Scalar.
+        constraints: (m,); the first is the touch equality, the others are inequalities >= 0.
+    """
+
+    x: ca.MX
+    p: ca.MX
+    cost: ca.MX
+    constraints: ca.MX
+
+
+def signed_distance(vertices: int) -> ca.Function:
+    """(point (2,), polygon (2, vertices)) -> signed distance [m], negative inside the counter-clockwise polygon."""
+    point, polygon = ca.SX.sym("point", 2), ca.SX.sym("polygon", 2, vertices)
+    inside, outside = -FAR, FAR**2
+    for i in range(vertices):
+        a, b = polygon[:, i], polygon[:, (i + 1) % vertices]
+        edge, offset = b - a, point - a
+        squared = ca.sumsqr(edge)
+        degenerate = squared < 1e-18
+        safe = ca.if_else(degenerate, 1.0, squared)
+        height = (edge[1] * offset[0] - edge[0] * offset[1]) / ca.sqrt(safe)
+        t = ca.fmin(1, ca.fmax(0, ca.dot(offset, edge) / safe))
+        inside = ca.fmax(inside, ca.if_else(degenerate, -FAR, height))
+        outside = ca.fmin(outside, ca.sumsqr(offset - t * edge))
+    # With one or two vertices there is no inside: the largest height is -FAR or at least 0.
+    is_inside = ca.logic_and(inside < 0, inside > -FAR)
+    # The small summand keeps the derivative finite on the outline.
+    distance = ca.if_else(is_inside, inside, ca.sqrt(outside + 1e-20))
+    return ca.Function("signed_distance", [point, polygon], [distance])
+
+
+def clearances(point: ca.MX, block: PolygonBlock, packed: ca.MX) -> ca.MX:
+    """(polygons,) signed distances of `point` (2,) less the radii."""
+    if block.polygons == 0:
+        return ca.MX(0, 1)
+    n_coordinates = 2 * block.vertices * block.polygons
+    polygons = ca.reshape(packed[:n_coordinates], 2, block.vertices * block.polygons)
+    distances = signed_distance(block.vertices).map(block.polygons)(ca.repmat(point, 1, block.polygons), polygons)
+    return distances.T - packed[n_coordinates:]
+
+
+def build(structure: SwitchStructure) -> SwitchProgram:
+    """The program of a structure, for inspection or for `solver`."""
+    x = ca.MX.sym("x", 4)
+    blocks = (structure.parts, structure.agent_obstacles, structure.object_obstacles)
+    start, position = ca.MX.sym("start", 4), ca.MX.sym("position", 2)
+    packed = [ca.MX.sym(name, block.size) for name, block in zip(("parts", "agent", "object"), blocks, strict=True)]
+    a, z = x[:2], x[2:]
+    touch = ca.mmin(clearances(a - position, structure.parts, packed[0]))
+    at_pick = clearances(a, structure.agent_obstacles, packed[1])
+    at_place = clearances(a + z - position, structure.agent_obstacles, packed[1])
+    placed = clearances(z, structure.object_obstacles, packed[2])
+    constraints = ca.vertcat(touch - TOUCH_GAP, ca.vertcat(at_pick, at_place, placed) - MARGIN)
+    return SwitchProgram(x, ca.vertcat(start, position, *packed), ca.sumsqr(x - start), constraints)
+
+
+@lru_cache(maxsize=64)
+def solver(structure: SwitchStructure) -> ca.Function:
+    """The compiled program of a structure."""
+    program = build(structure)
+    nlp = {"x": program.x, "p": program.p, "f": program.cost, "g": program.constraints}
+    return ca.nlpsol("switch", "ipopt", nlp, _IPOPT_OPTIONS)
+
+
+@dataclass(frozen=True, eq=False)
+class SwitchQuery:
+    """The numbers of one switch-configuration problem.
+
+    Attributes:
+        position: (2,) [m] object centre before the pick.
+        parts: The object's cores, relative to its position, with the radii at which the agent touches them.
+        agent_obstacles: Obstacles of the agent, without the object itself.
+        object_obstacles: Obstacles of the object.
+        lower: (2,) [m] lower corner of the placement region.
+        upper: (2,) [m] upper corner.
+    """
+
+    position: FloatArray
+    parts: ObstacleSet
+    agent_obstacles: ObstacleSet
+    object_obstacles: ObstacleSet
+    lower: FloatArray
+    upper: FloatArray
+
+    def solve(self, starts: Sequence[FloatArray]) -> list[tuple[FloatArray, FloatArray]]:
+        """The solutions (a, z), each (2,) [m], that the optimiser claims from `starts` [(4,), ...]; check them."""
+        sets = (self.parts, self.agent_obstacles, self.object_obstacles)
+        blocks = [PolygonBlock.of(obstacles) for obstacles in sets]
+        program = solver(SwitchStructure(*blocks))
+        packed = [block.pack(obstacles) for block, obstacles in zip(blocks, sets, strict=True)]
+        upper = np.full(1 + 2 * len(self.agent_obstacles) + len(self.object_obstacles), np.inf)
+        upper[0] = 0.0
+        solutions = []
+        for start in starts:
+            found = program(
+                x0=start,
+                p=np.concatenate([start, self.position, *packed]),
+                lbx=np.array([-np.inf, -np.inf, *self.lower]),
+                ubx=np.array([np.inf, np.inf, *self.upper]),
+                lbg=0.0,
+                ubg=upper,
+            )
+            if program.stats()["success"]:
+                x = np.array(found["x"]).ravel()
+                solutions.append((x[:2], x[2:]))
+        return solutions
