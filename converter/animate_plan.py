@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import repeat
-from math import ceil, inf
+from math import inf
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class _Timing:
     speed: float
 
     def frames(self, seconds: float) -> int:
-        return max(ceil(seconds * self.fps), 1)
+        return max(round(seconds * self.fps), 1)
 
     def travel_frames(self, length: float) -> int:
         """Frames that the agent needs for `length` [m], at least one."""

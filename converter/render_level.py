@@ -1,6 +1,7 @@
 """Pictures of levels: one square tile a cell, the outer wall included."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from converter.drawing import Drawing, Item, Shape, box, disc
 from converter.raster import Image, paint, require_paintable
 from converter.theme import PAPER, Color, Theme, mixed
 from pcg.errors import InputError
-from pcg.level import Level, Tile
+from pcg.level import Level, Tile, TileArray
 
 MIN_TILE_PX = 4
 
@@ -27,16 +28,27 @@ def draw_level(level: Level, tile_px: int = 40, *, theme: Theme = PAPER) -> Imag
     """
     if tile_px < MIN_TILE_PX:
         raise InputError("tile size", f"{tile_px} pixels; at least {MIN_TILE_PX} are needed")
+    kinds = tile_kinds(level)
+    rows, columns = kinds.shape
+    require_paintable(columns * tile_px, rows * tile_px)
+    return _tiles(tile_px, theme)[kinds].transpose(0, 2, 1, 3, 4).reshape(rows * tile_px, columns * tile_px, 3)
+
+
+def tile_kinds(level: Level) -> TileArray:
+    """(rows + 2, columns + 2): the kind of each tile of the picture, in the numbers of `tile_drawings`."""
     kinds = np.pad(level.tiles, 1, constant_values=Tile.WALL)
     if level.goal_crate is not None:
         row, column = level.goal_crate
         on_target = level.tiles[row, column] == Tile.CRATE_ON_TARGET
         kinds[row + 1, column + 1] = GOAL_CRATE_ON_TARGET if on_target else GOAL_CRATE
-    rows, columns = kinds.shape
-    require_paintable(columns * tile_px, rows * tile_px)
+    return kinds
+
+
+@lru_cache(maxsize=2)
+def _tiles(tile_px: int, theme: Theme) -> Image:
+    """(kinds, tile_px, tile_px, 3): every kind of tile, painted once for a series of levels."""
     drawings = tile_drawings(theme)
-    tiles = np.stack([paint(drawings[kind], tile_px) for kind in range(len(drawings))])
-    return tiles[kinds].transpose(0, 2, 1, 3, 4).reshape(rows * tile_px, columns * tile_px, 3)
+    return np.stack([paint(drawings[kind], tile_px) for kind in range(len(drawings))])
 
 
 def tile_drawings(theme: Theme) -> Mapping[int, Drawing]:

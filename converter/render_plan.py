@@ -30,7 +30,9 @@ GHOST_SHADE = 0.35
 CASING = 1.0
 """Width of the outline of carrying paths, in units of the picture; without it white ones would not show."""
 
-ARROW = np.array([[0.6, 0.0], [-0.4, 0.5], [-0.4, -0.5]])
+ARROW = np.array([[0.5, 0.0], [-0.5, 0.5], [-0.5, -0.5]])
+"""Triangle of unit length that points right, its middle at the origin."""
+
 ARROW_LENGTH = 9.0
 """Arrow heads show the direction of paths at least three times as long, in units of the picture."""
 
@@ -131,8 +133,8 @@ def _arrow(path: FloatArray, length: float) -> list[Rounded]:
     total = float(np.hypot(*np.diff(path, axis=0).T).sum())
     if total < 3 * length:
         return []
-    middle, ahead = points_along(path, np.array([total / 2 - length / 4, total / 2 + length / 4]))
-    heading = float(np.arctan2(*(ahead - middle)[::-1]))
+    before, middle, after = points_along(path, total / 2 + length / 4 * np.array([-1.0, 0.0, 1.0]))
+    heading = float(np.arctan2(*(after - before)[::-1]))
     return [Rounded(middle + length * ARROW @ rotation(heading), 0.0)]
 
 

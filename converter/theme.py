@@ -55,11 +55,11 @@ class Theme:
     move_width: float = 1.8
     carry_width: float = 4.5
     text_height: float = 15.0
-    ghost_opacity: float = 0.22
+    ghost_opacity: float = 0.28
 
 
 PAPER = Theme()
-"""The colours of the pictures in Levit et al. (ICRA 2024)."""
+"""Colours after the pictures in Levit et al. (ICRA 2024): brown walls, yellow agent, blue goal-object, red goal."""
 
 
 def mixed(color: Color, other: Color, share: float) -> Color:
