@@ -168,6 +168,20 @@ def test_the_goal_crate_has_to_be_on_the_first_target():
     assert exchanged.goal_crate == lower
 
 
+@pytest.mark.parametrize(
+    ("text", "goal"),
+    [
+        ("######\n#$   #\n# @. #\n#    #\n######", None),
+        ("########\n#.@#.  #\n##   $ #\n#   $  #\n########", (2, 3)),
+    ],
+    ids=["no pull from the target leads into a corner", "the goal crate cannot get to the first target"],
+)
+def test_dead_cells_are_seen_before_any_push(text: str, goal: Cell | None):
+    """A level without enough live crates is decided without a search."""
+    solution = solve(parse_levels(text, "test.xsb")[0], goal_crate=goal)
+    assert (solution.status, solution.states) == (SolverStatus.UNSOLVABLE, 1)
+
+
 def test_the_argument_overrides_the_levels_goal_crate():
     """The goal crate of the level holds unless another one is given."""
     (level,) = parse_levels("#######\n#.$@$ #\n#######", "test.xsb")
