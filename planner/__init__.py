@@ -1,11 +1,11 @@
 """From a scene to a plan: forward search over pick-and-place subproblems, and the independent verification.
 
-    from planner import Settings, solve
-    result = solve(scene, Settings(method="Rnd+FPR"), numpy.random.default_rng(0))
+from planner import Settings, solve
+result = solve(scene, Settings(method="Rnd+FPR"), numpy.random.default_rng(0))
 """
 
 from planner.result import PlanResult
 from planner.search import solve
-from planner.settings import METHODS, PRESETS, Settings
+from planner.settings import METHODS, PRESETS, Settings, settings_for
 
-__all__ = ["METHODS", "PRESETS", "PlanResult", "Settings", "solve"]
+__all__ = ["METHODS", "PRESETS", "PlanResult", "Settings", "settings_for", "solve"]

@@ -70,9 +70,7 @@ class ObstacleSet:
 
     def moved(self, by: FloatArray) -> Self:
         """The set translated by the vector `by` (2,) [m]."""
-        return replace(
-            self, vertices=self.vertices + by, boxes=self.boxes + np.tile(by, 2), corners=self.corners + by
-        )
+        return replace(self, vertices=self.vertices + by, boxes=self.boxes + np.tile(by, 2), corners=self.corners + by)
 
     def with_free_corners(self) -> Self:
         """The same obstacles; corners that lie in one of them are dropped."""
@@ -164,10 +162,7 @@ def body_obstacles(moving: Body, body: Body, tolerance: float) -> ObstacleSet:
     pairs = [(i, j) for i in range(len(moving.parts)) for j in range(len(body.parts))]
     return ObstacleSet.of(
         [minkowski_sum(body.cores[j], -moving.cores[i]) for i, j in pairs],
-        [
-            moving.parts[i].edge_radius + body.parts[j].edge_radius - tolerance - NUMERIC_SLACK
-            for i, j in pairs
-        ],
+        [moving.parts[i].edge_radius + body.parts[j].edge_radius - tolerance - NUMERIC_SLACK for i, j in pairs],
     )
 
 

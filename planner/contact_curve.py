@@ -22,7 +22,9 @@ class ContactCurve:
         knots = [_knots(core, reach) for core, reach in zip(body.cores, reaches, strict=True)]
         # A curve of several parts is sampled as one; the step from part to part has no length.
         lengths = np.cumsum([0.0, *(piece[-1, 0] for piece in knots)])
-        self._knots = np.vstack([piece + [start, 0, 0, 0, 0] for piece, start in zip(knots, lengths, strict=False)])
+        self._knots = np.vstack(
+            [piece + np.array([start, 0, 0, 0, 0]) for piece, start in zip(knots, lengths, strict=False)]
+        )
         self._interior = ObstacleSet.of(body.cores, [reach - NUMERIC_SLACK for reach in reaches])
         self.length = float(lengths[-1])
 

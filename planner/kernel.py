@@ -74,7 +74,7 @@ def _segments_cross(ax: float, ay: float, bx: float, by: float, polygon: FloatAr
     of_q = (bx - ax) * (qy - ay) - (by - ay) * (qx - ax)
     of_a = (qx - px) * (ay - py) - (qy - py) * (ax - px)
     of_b = (qx - px) * (by - py) - (qy - py) * (bx - px)
-    return of_p * of_q < 0.0 and of_a * of_b < 0.0
+    return bool(of_p * of_q < 0.0 and of_a * of_b < 0.0)
 
 
 @njit(cache=True)
@@ -148,7 +148,5 @@ def segments_free(
     """For each pair of rows of `starts` and `ends` (n, 2) whether the segment between them meets no obstacle."""
     free = np.empty(len(starts), np.bool_)
     for i in range(len(starts)):
-        free[i] = segment_free(
-            starts[i, 0], starts[i, 1], ends[i, 0], ends[i, 1], vertices, first, rho, boxes
-        )
+        free[i] = segment_free(starts[i, 0], starts[i, 1], ends[i, 0], ends[i, 1], vertices, first, rho, boxes)
     return free

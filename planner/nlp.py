@@ -101,7 +101,7 @@ class SwitchProgram:
 def signed_distance(vertices: int) -> ca.Function:
     """(point (2,), polygon (2, vertices)) -> signed distance [m], negative inside the counter-clockwise polygon."""
     point, polygon = ca.SX.sym("point", 2), ca.SX.sym("polygon", 2, vertices)
-    inside, outside = -FAR, FAR**2
+    inside, outside = ca.SX(-FAR), ca.SX(FAR**2)
     for i in range(vertices):
         a, b = polygon[:, i], polygon[:, (i + 1) % vertices]
         edge, offset = b - a, point - a

@@ -59,7 +59,9 @@ class SampledPickPlace:
             offset = grasp - start
             carry_space = self._problem.carry_space(self._configuration, index, offset)
             carry = self._motion(carry_space, grasp, (placement + offset)[None])
-            approach = None if carry is None else self._motion(self._agent_space, self._configuration.agent, grasp[None])
+            approach = (
+                None if carry is None else self._motion(self._agent_space, self._configuration.agent, grasp[None])
+            )
             if carry is not None and approach is not None:
                 self._counters["subproblems_solved"] += 1
                 return PickPlace(index, approach, carry, placement)
@@ -68,7 +70,9 @@ class SampledPickPlace:
     def regrasp(self, index: int) -> PickPlace | None:
         """Drives to some grasp of object `index` and leaves the object where it is."""
         approach = self._path_to_grasp(index)
-        return None if approach is None else PickPlace(index, approach, approach[-1:], self._configuration.objects[index])
+        return (
+            None if approach is None else PickPlace(index, approach, approach[-1:], self._configuration.objects[index])
+        )
 
     def _path_to_grasp(self, index: int) -> FloatArray | None:
         offsets = self._curves[index].sample(self._settings.grasp_starts, self._rng)

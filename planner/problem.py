@@ -94,9 +94,7 @@ class Problem:
     def sight_blockers(self, configuration: Configuration, *ignored: int) -> ObstacleSet:
         """Walls and all objects but the `ignored` ones, as they block lines of sight."""
         others = [
-            blocker.moved(configuration.objects[k])
-            for k, blocker in enumerate(self.sight_objects)
-            if k not in ignored
+            blocker.moved(configuration.objects[k]) for k, blocker in enumerate(self.sight_objects) if k not in ignored
         ]
         return ObstacleSet.union([self._sight_walls, *others])
 

@@ -1,14 +1,12 @@
 """Every parameter of the search in one place, with the value chosen and why."""
 
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
 from pcg.errors import InputError
 
 METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R")
 """Names of the methods; letters after the plus: F filter, P prioritised selection, R rejection."""
-
-PRESETS = ("fast", "faithful")
 
 
 @dataclass(frozen=True)
@@ -56,8 +54,6 @@ class Settings:
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise InputError("method", f"found {self.method!r}, allowed are {', '.join(METHODS)}")
-        if self.preset not in PRESETS:
-            raise InputError("settings", f"found {self.preset!r}, allowed are {', '.join(PRESETS)}")
         if not self.time_limit > 0:
             raise InputError("time limit", f"found {self.time_limit}, must be > 0 seconds")
 
@@ -71,10 +67,25 @@ class Settings:
         """Which of filter (F), prioritised selection (P) and rejection (R) are on."""
         return self.method.partition("+")[2]
 
-    def with_(self, **changes: Any) -> Self:
-        """A copy with some values changed."""
-        return replace(self, **changes)
-
     def as_document(self) -> dict[str, Any]:
         """Plain values, for plan files and trial records."""
         return asdict(self)
+
+
+PRESETS = {
+    "fast": Settings(),
+    # Most draws fail where the filter cannot ask which positions a carry can lead to, hence many more of them.
+    "faithful": Settings(preset="faithful", candidates=200, keep_share=0.5, subgoals_per_object=50),
+}
+"""Settings by the name of their preset."""
+
+
+def settings_for(preset: str, **changes: Any) -> Settings:
+    """The settings of a preset with some values changed.
+
+    Raises:
+        InputError: there is no such preset, or a value is not allowed.
+    """
+    if preset not in PRESETS:
+        raise InputError("settings", f"found {preset!r}, allowed are {', '.join(PRESETS)}")
+    return replace(PRESETS[preset], **changes)

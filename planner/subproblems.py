@@ -28,6 +28,4 @@ def subproblem_solvers(
     # CasADi and OMPL take half a second to import, which the fast preset need not pay.
     from planner.pick_place_sampled import SampledPickPlace  # noqa: PLC0415  # see above
 
-    return lambda configuration: SampledPickPlace(
-        problem, curves, configuration, settings, rng, counters, should_stop
-    )
+    return lambda configuration: SampledPickPlace(problem, curves, configuration, settings, rng, counters, should_stop)

@@ -40,9 +40,7 @@ def _shortest_tree(
             if settled[i]:
                 continue
             through = distance[best] + np.hypot(points[i, 0] - x, points[i, 1] - y)
-            if through < distance[i] and segment_free(
-                x, y, points[i, 0], points[i, 1], vertices, first, rho, boxes
-            ):
+            if through < distance[i] and segment_free(x, y, points[i, 0], points[i, 1], vertices, first, rho, boxes):
                 distance[i] = through
                 previous[i] = best
     return distance, previous
@@ -64,7 +62,7 @@ def _best_last_turn(
         if total[i] == np.inf:
             break
         if segment_free(points[i, 0], points[i, 1], goal[0], goal[1], vertices, first, rho, boxes):
-            return i
+            return int(i)
     return -1
 
 
