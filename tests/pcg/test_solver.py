@@ -172,7 +172,7 @@ def test_the_goal_crate_has_to_be_on_the_first_target():
     ("text", "goal"),
     [
         ("######\n#$   #\n# @. #\n#    #\n######", None),
-        ("########\n#.@#.  #\n##   $ #\n#   $  #\n########", (1, 4)),
+        ("########\n#.@#.  #\n##  $$ #\n#      #\n########", (1, 4)),
     ],
     ids=["no pull from the target leads into a corner", "the goal crate cannot get to the first target"],
 )
