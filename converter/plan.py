@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 
 from converter.formats import scene_yaml
+from converter.formats.body_document import Number
 from converter.scene import Scene
 from converter.shape import FloatArray, frozen_array
 from pcg.errors import InputError
@@ -160,13 +161,13 @@ def plan_document(plan: Plan) -> dict[str, Any]:
 
 class _Subgoal(Document):
     object: str
-    position: tuple[float, float]
+    position: tuple[Number, Number]
 
 
 class _Segment(Document):
     mode: Literal["move", "carry"]
     object: str | None = None
-    path: list[tuple[float, float]]
+    path: list[tuple[Number, Number]]
 
 
 class _Plan(Document):

@@ -21,7 +21,7 @@ from pcg.errors import InputError
 
 Image = npt.NDArray[np.uint8]
 
-MAX_PIXELS = 25_000_000
+MAX_PIXELS = 4096 * 4096
 """Largest picture; its intermediate arrays take about a gigabyte."""
 
 FINEST_STEP = 0.25
@@ -185,10 +185,11 @@ def _coverage(distance: FloatArray, pixel: float) -> FloatArray:
 def _blend(pixels: Image, layers: list[tuple[Color, FloatArray]]) -> None:
     """Mixes colours into `pixels` (h, w, 3), each with its (h, w) weights; the weights add up to at most 1."""
     ground = 1.0 - np.sum([weights for _, weights in layers], axis=0)
-    mixed = pixels * ground[..., None]
-    for color, weights in layers:
-        mixed += weights[..., None] * _bytes(color)
-    pixels[:] = np.rint(mixed)
+    for channel in range(3):
+        mixed = pixels[..., channel] * ground
+        for color, weights in layers:
+            mixed += weights * _bytes(color)[channel]
+        pixels[..., channel] = np.rint(mixed)
 
 
 def _bytes(color: Color) -> npt.NDArray[np.uint8]:

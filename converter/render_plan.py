@@ -19,12 +19,12 @@ from converter.shape import FloatArray, rotation
 from converter.theme import PAPER, Color, Theme, mixed
 
 SAME_PLACE = 1e-3
-"""Placements of an object closer than this [m] share one shape and one label."""
+"""Placements of an object at one point of a grid of this pitch [m] share one shape and one label."""
 
 LABELLED = 3
 """Numbers that a shared label lists."""
 
-GHOST_SHADE = 0.35
+GHOST_SHADE = 0.55
 """Share of the outline's colour in the outlines of translucent shapes and of paths."""
 
 CASING = 1.0
@@ -91,16 +91,13 @@ def plan_drawing(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Drawing:
 
 def placements(carries: list[tuple[Body, Step]]) -> list[Placement]:
     """Where carries, each with its object, end; those of one object at one place are one."""
-    found: list[Placement] = []
+    found: dict[tuple[str, int, int], Placement] = {}
     for number, (body, step) in enumerate(carries, start=1):
         position = step.segment.path[-1] + step.offset
-        for i, place in enumerate(found):
-            if place.body is body and np.hypot(*(place.position - position)) < SAME_PLACE:
-                found[i] = replace(place, numbers=(*place.numbers, number))
-                break
-        else:
-            found.append(Placement(body, position, (number,)))
-    return found
+        column, row = np.rint(position / SAME_PLACE).astype(int).tolist()
+        known = found.setdefault((body.name, column, row), Placement(body, position, ()))
+        found[body.name, column, row] = replace(known, numbers=(*known.numbers, number))
+    return list(found.values())
 
 
 def _ghost(shape: Shape, theme: Theme) -> Shape:
@@ -144,9 +141,9 @@ def _badge(place: Placement, color: Color, unit: float, theme: Theme) -> list[It
     text = ",".join(shown) + ("…" if len(place.numbers) > LABELLED else "")
     height = theme.text_height * unit
     half_width = np.array([(len(text) - 1) * 0.25 * height, 0.0])
-    plate = Rounded(np.array([place.position - half_width, place.position + half_width]), 0.6 * height)
+    ends = np.unique([place.position - half_width, place.position + half_width], axis=0)
     outline = mixed(color, theme.outline, GHOST_SHADE)
     return [
-        Shape((plate,), theme.badge, outline=outline, outline_width=theme.outline_width * unit),
+        Shape((Rounded(ends, 0.6 * height),), theme.badge, outline=outline, outline_width=theme.outline_width * unit),
         Label(text, place.position, height, theme.outline),
     ]

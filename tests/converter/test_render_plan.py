@@ -124,3 +124,9 @@ def test_arrows_point_ahead(small_room: Scene, small_plan: Plan):
     assert thickness.max() > 2 * before
     assert after < thickness.max() - 4
     assert np.flatnonzero(thickness > 1.5 * before).min() >= wide - 3
+
+
+def test_paths_far_outside_are_cut(small_room: Scene, small_plan: Plan):
+    """A path to the largest coordinates that a plan file may have leaves the picture, which stays as it was."""
+    away = replace(small_plan, segments=(Segment("move", None, np.array([[0.0, 2.05], [1e4, 1e4], [-1e4, 1e4]])),))
+    assert (draw_plan(small_room, away) != draw_scene(small_room)).any(axis=-1).sum() < 200
