@@ -137,9 +137,7 @@ class TrialStore:
 def _opened(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path)
     try:
-        (version,) = connection.execute("PRAGMA user_version").fetchone()
-        if version not in (0, VERSION):
-            raise InputError(str(path), f"a database of version {version}, allowed is {VERSION}")
+        _require_version(connection, path)
         # With a write-ahead log others can read while this process writes, and a commit does not wait for the disk.
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = NORMAL")
@@ -149,6 +147,12 @@ def _opened(path: Path) -> sqlite3.Connection:
         connection.close()
         raise
     return connection
+
+
+def _require_version(connection: sqlite3.Connection, path: Path) -> None:
+    (version,) = connection.execute("PRAGMA user_version").fetchone()
+    if version not in (0, VERSION):
+        raise InputError(str(path), f"a database of version {version}, allowed is {VERSION}")
 
 
 def _locked(folder: Path) -> IO[str]:

@@ -1,5 +1,6 @@
 """Tables of a study: what happened per scene and method, as numbers and as Markdown."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -77,8 +78,11 @@ class Cell:
 
 
 def seconds(value: float) -> str:
-    """A time [s] with three significant digits, never in exponent notation: `0.00123`, `12.3`, `123`."""
-    return f"{value:.0f}" if value >= 100 else f"{value:#.3g}" if value >= 0.001 else f"{value:.5f}"
+    """A time [s] with three significant digits down to 10 microseconds, never in exponent notation."""
+    if value <= 0:
+        return "0"
+    decimals = min(max(2 - math.floor(math.log10(value)), 0), 5)
+    return f"{value:.{decimals}f}"
 
 
 def by_scene_and_method(results: Iterable[Result]) -> dict[tuple[str, str], Cell]:

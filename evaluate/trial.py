@@ -7,8 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from converter.plan import Plan
-from converter.scene import Scene
+from converter.scene import Agent, Body, Goal, Scene
+from converter.shape import Part
+from pcg.errors import InputError
 from planner import Settings, solve
+from planner.problem import Problem
 from planner.verify import Violation, verify
 
 
@@ -70,6 +73,38 @@ def run_trial(scene: Scene, settings: Settings, seed: int) -> TrialOutcome:
     rng = np.random.default_rng(np.random.SeedSequence(seed))
     plan = solve(scene, settings, rng).to_plan(scene, settings, seed)
     return TrialOutcome(plan, tuple(verify(scene, plan)) if plan.solved else None)
+
+
+def require_valid_start(scene: Scene, where: str) -> None:
+    """Refuses a scene whose initial configuration is invalid, as the planner would.
+
+    Args:
+        scene: The scene.
+        where: What it was read from; it begins the message.
+
+    Raises:
+        InputError: naming the two bodies that overlap, or the one that is out of bounds.
+    """
+    try:
+        Problem(scene)
+    except InputError as error:
+        raise InputError(where, str(error).removeprefix(f"{scene.name}: ")) from None
+
+
+def warm_up(settings: Settings) -> None:
+    """Solves a small scene, so that no trial's time includes loading and compiling the planner."""
+    obstacle = Body("obstacle", np.array([0.5, 0.5, 0.1]), 0.2, (Part.box((0.2, 0.2)),))
+    crate = Body("crate", np.array([0.0, 0.0, 0.1]), 0.2, (Part.box((0.2, 0.2)),))
+    scene = Scene(
+        name="warm-up",
+        bounds=np.array([[-1.0, -1.0], [1.0, 1.0]]),
+        tolerance=1e-4,
+        agent=Agent(np.array([-0.5, 0.0]), 0.1),
+        walls=(Body("wall", np.array([0.0, 0.5, 0.1]), 0.2, (Part.box((0.2, 0.2)),)),),
+        objects=(crate, obstacle),
+        goal=Goal("crate", np.array([0.5, 0.0]), np.array([0.2, 0.2])),
+    )
+    run_trial(scene, settings, 0)
 
 
 def _digest(document: object) -> str:

@@ -17,8 +17,9 @@ import resource
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
+from enum import Enum, auto
 from multiprocessing.connection import Connection
 from typing import Any, Generic, Literal, TypeVar
 
@@ -28,8 +29,14 @@ Result = TypeVar("Result")
 START_ATTEMPTS = 3
 """How often in a row a worker may end before it is ready."""
 
-_READY = "ready"
 _SPAWN = multiprocessing.get_context("spawn")
+
+
+class _State(Enum):
+    """Of a worker, where a result is not there yet."""
+
+    READY = auto()
+    UNDER_WAY = auto()
 
 
 class WorkerStartError(RuntimeError):
@@ -70,7 +77,7 @@ def run_tasks(
     workers: int,
     limits: Limits,
     prepare: Callable[[], object] | None = None,
-) -> Iterator[tuple[Task, Result | Failure]]:
+) -> Generator[tuple[Task, Result | Failure]]:
     """Yields each task with its result, in the order of completion.
 
     Closing the generator, or an exception inside it such as KeyboardInterrupt, kills the workers and drops the
@@ -98,7 +105,7 @@ def run_tasks(
                 return
             for worker in _with_news(busy):
                 outcome = worker.news()
-                if outcome is not None:
+                if outcome is not _State.UNDER_WAY:
                     busy.remove(worker)
                     idle.append(worker)
                     yield worker.task, outcome
@@ -146,8 +153,8 @@ class _Worker(Generic[Task, Result]):
         elif self._ready:
             self._send()
 
-    def news(self) -> Result | Failure | None:
-        """What became of the task, or None if it is under way; to be called when there is something to hear."""
+    def news(self) -> Result | Failure | Literal[_State.UNDER_WAY]:
+        """What became of the task; to be called when there is something to hear."""
         if not self.connection.poll():
             self.kill()
             return Failure("timeout", f"stopped at the hard limit of {self._limits.seconds:g} s", self._elapsed())
@@ -155,10 +162,10 @@ class _Worker(Generic[Task, Result]):
             message = self.connection.recv()
         except (EOFError, OSError):
             return self._lost()
-        if isinstance(message, str) and message == _READY:
+        if message is _State.READY:
             self._ready, self._failed_starts = True, 0
             self._send()
-            return None
+            return _State.UNDER_WAY
         self.deadline = None
         return message  # type: ignore[no-any-return]  # what the function returned, or a Failure
 
@@ -186,7 +193,7 @@ class _Worker(Generic[Task, Result]):
         with contextlib.suppress(OSError):
             self.connection.send(self.task)
 
-    def _lost(self) -> Failure | None:
+    def _lost(self) -> Failure | Literal[_State.UNDER_WAY]:
         assert self._process is not None  # noqa: S101  # a connection implies a process
         was_ready = self._ready
         self._process.join()
@@ -199,7 +206,7 @@ class _Worker(Generic[Task, Result]):
         if self._failed_starts == START_ATTEMPTS:
             raise WorkerStartError(f"worker processes end at their start with {reason}")
         self._start()
-        return None
+        return _State.UNDER_WAY
 
     def _elapsed(self) -> float:
         return time.monotonic() - self._began
@@ -228,7 +235,7 @@ def _serve(
     if prepare is not None:
         prepare()
     with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):
-        connection.send(_READY)
+        connection.send(_State.READY)
         while True:
             connection.send(_outcome(function, connection.recv()))
 

@@ -1,0 +1,256 @@
+"""The command line `manipuzzle`: one function per command, which only declares arguments and examples.
+
+The work is done by `evaluate.commands`, imported when a command runs, so that `--help` and bad usage answer at once.
+
+Output: results on stdout, as a table or with `--json` as exactly one JSON document; everything else on stderr.
+Exit status: 0 done, 1 a clean negative (something is not solved, not valid, not solvable), 2 bad input or usage, with
+one line `error: ...` on stderr and nothing on stdout; 130 after Ctrl-C, which keeps the files written so far.
+"""
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+import typer.core
+
+NEGATIVE = 1
+BAD_INPUT = 2
+BROKEN_PIPE = 141
+"""What a shell reports of a program that a closed pipe ended: 128 + SIGPIPE."""
+
+
+class _Commands(typer.core.TyperGroup):
+    """Turns every way in which a command can end into an exit status and at most one line on stderr."""
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        try:
+            status = super().main(*args, **{**kwargs, "standalone_mode": False})
+            sys.stdout.flush()
+        except ValueError as error:
+            from pcg.errors import InputError
+
+            if not isinstance(error, InputError):
+                raise
+            _fail(str(error))
+        except typer.TyperException as error:
+            _fail(error.format_message())
+        except BrokenPipeError:
+            # Python flushes stdout once more at its end, which would fail again.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(BROKEN_PIPE)
+        except OSError as error:
+            _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        sys.exit(status or 0)
+
+
+def _fail(message: str) -> NoReturn:
+    typer.echo(f"error: {' '.join(message.split())}", err=True)
+    sys.exit(BAD_INPUT)
+
+
+app = typer.Typer(
+    cls=_Commands,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Json = Annotated[bool, typer.Option("--json", help="Print exactly one JSON document.")]
+Out = Annotated[Path, typer.Option(metavar="DIR", help="Folder for the results; made if missing.")]
+Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of all random choices.")]
+Scenes = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scene files (.yaml, .g).")]
+Preset = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="Change the geometry to a preset first: clear or published.", show_default=False),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        metavar="METRES", min=0, help="Penetration that counts as touching, instead of the scene's.", show_default=False
+    ),
+]
+
+
+def main() -> None:
+    """Entry point of the `manipuzzle` program."""
+    app()
+
+
+@app.callback(invoke_without_command=True)
+def manipuzzle(
+    context: typer.Context,
+    *,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Generate, convert, check, solve and evaluate sequential manipulation puzzles."""
+    if version:
+        from importlib.metadata import version as version_of
+
+        typer.echo(version_of("manipuzzle"))
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+@app.command(short_help="Generate solvable levels.")
+def generate(
+    *,
+    out: Out,
+    agent: Annotated[str, typer.Option(metavar="NAME", help="What proposes levels: random.")] = "random",
+    count: Annotated[int, typer.Option(metavar="N", min=1, help="Number of levels.")] = 10,
+    seed: Seed = 0,
+    rows: Annotated[int, typer.Option(metavar="N", min=1, max=100, help="Inner rows.")] = 10,
+    columns: Annotated[int, typer.Option(metavar="N", min=1, max=100, help="Inner columns.")] = 10,
+    crates: Annotated[int, typer.Option(metavar="N", min=1, help="Crates of a level.")] = 2,
+    targets: Annotated[int, typer.Option(metavar="N", min=1, help="Targets of a level.")] = 1,
+    min_pushes: Annotated[
+        int, typer.Option(metavar="N", min=0, help="Pushes that the shortest solution needs at least.")
+    ] = 3,
+    json: Json = False,
+) -> None:
+    """Generate solvable levels as a level set: levels.xsb and manifest.jsonl.
+
+    Example:  manipuzzle generate --agent random --count 10 --seed 0 --out out/levels
+    """
+    from evaluate.commands.generate import run, settings_of
+
+    settings = settings_of(rows=rows, columns=columns, crates=crates, targets=targets, min_pushes=min_pushes)
+    _exit(run(agent, count, seed, settings, out, as_json=json))
+
+
+@app.command(short_help="Report on levels: solvable, statistics, duplicates.")
+def levels(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE", help="XSB files or level sets.")],
+    *,
+    json: Json = False,
+) -> None:
+    """Report on levels: solvable, solution, statistics, duplicates. Exit status 1 if one is not solvable.
+
+    Example:  manipuzzle levels out/levels
+    """
+    from evaluate.commands.levels import run
+
+    _exit(run(files, as_json=json))
+
+
+@app.command(short_help="Convert levels and scenes to scene files.")
+def convert(
+    inputs: Annotated[list[Path], typer.Argument(metavar="LEVEL|SCENE", help="XSB files, level sets, scene files.")],
+    *,
+    out: Out,
+    to: Annotated[str, typer.Option(metavar="NAME", help="Format of the scenes: yaml.")] = "yaml",
+    preset: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Geometry: clear (default for levels) or published.", show_default=False),
+    ] = None,
+    tolerance: Tolerance = None,
+    json: Json = False,
+) -> None:
+    """Convert levels and scenes to scene files DIR/{name}.yaml.
+
+    Example:  manipuzzle convert out/levels --out out/scenes
+    """
+    from evaluate.commands.convert import run
+
+    _exit(run(inputs, out, to=to, preset=preset, tolerance=tolerance, as_json=json))
+
+
+@app.command(short_help="Check scenes in a 2D physics preview.")
+def check(scenes: Scenes, *, preset: Preset = None, tolerance: Tolerance = None, json: Json = False) -> None:
+    """Drive through scenes in a 2D physics preview and list their problems. Exit status 1 if one is not valid.
+
+    Example:  manipuzzle check out/scenes/*.yaml
+    """
+    from evaluate.commands.check import run
+
+    _exit(run(scenes, preset=preset, tolerance=tolerance, as_json=json))
+
+
+@app.command(short_help="Plan, and verify the plans.")
+def solve(
+    scenes: Scenes,
+    *,
+    out: Out,
+    method: Annotated[str, typer.Option(metavar="NAME", help="Rnd+FPR, Rnd+FP, Rnd+FR or Rnd+R.")] = "Rnd+FPR",
+    seed: Seed = 0,
+    time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9, help="For each scene.")] = 60.0,
+    settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",
+    preset: Preset = None,
+    tolerance: Tolerance = None,
+    json: Json = False,
+) -> None:
+    """Plan, verify the plan, and write it to DIR/{scene}-{method}-{seed}.json. Exit status 1 if one is not solved.
+
+    Example:  manipuzzle solve data/puzzles/cube-free.yaml --out out/plans
+    """
+    from evaluate.commands.solve import run
+    from planner import settings_for
+
+    of_planner = settings_for(settings, method=method, time_limit=time_limit)
+    _exit(run(scenes, out, of_planner, seed, preset=preset, tolerance=tolerance, as_json=json))
+
+
+@app.command(short_help="Check a plan independently of the planner.")
+def verify(
+    scene: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (.yaml, .g).")],
+    plan: Annotated[Path, typer.Argument(metavar="PLAN", help="Plan file (.json).")],
+    *,
+    preset: Preset = None,
+    tolerance: Tolerance = None,
+    json: Json = False,
+) -> None:
+    """Check a plan independently of the planner and list every violation. Exit status 1 if there is one.
+
+    Example:  manipuzzle verify data/puzzles/cube-free.yaml out/plans/cube-free-Rnd+FPR-0.json
+    """
+    from evaluate.commands.verify import run
+
+    _exit(run(scene, plan, preset=preset, tolerance=tolerance, as_json=json))
+
+
+@app.command(short_help="Draw levels, scenes and plans.")
+def render(
+    inputs: Annotated[
+        list[Path], typer.Argument(metavar="LEVEL|SCENE|PLAN", help="XSB files, level sets, scenes, plans.")
+    ],
+    *,
+    out: Out,
+    format_: Annotated[str, typer.Option("--format", metavar="NAME", help="png, or gif for plans.")] = "png",
+    scene: Annotated[
+        Path | None, typer.Option(metavar="SCENE", help="Scene of plans whose files hold none.", show_default=False)
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Draw levels, scenes and plans to DIR/{name}.{format}.
+
+    Example:  manipuzzle render out/plans/*.json --out out/pictures --format gif
+    """
+    from evaluate.commands.render import run
+
+    _exit(run(inputs, out, format_, scene, as_json=json))
+
+
+@app.command(short_help="Solve many scenes with many methods and seeds.")
+def study(
+    spec: Annotated[Path, typer.Argument(metavar="SPEC.yaml", help="Scenes, methods, seeds and limits.")],
+    *,
+    out: Out,
+    workers: Annotated[int, typer.Option(metavar="N", min=1, max=1024, help="Processes that solve.")] = 1,
+    json: Json = False,
+) -> None:
+    """Solve every scene with every method and seed; DIR/trials.sqlite holds the trials, DIR/table.md the table.
+
+    Trials that DIR holds are not repeated, so an interrupted study is continued by the same command.
+
+    Example:  manipuzzle study data/studies/smoke.yaml --out out/study --workers 2
+    """
+    from evaluate.commands.study import run
+
+    _exit(run(spec, out, workers, as_json=json))
+
+
+def _exit(all_well: bool) -> None:  # noqa: FBT001 - the one thing that it is about
+    if not all_well:
+        raise typer.Exit(NEGATIVE)

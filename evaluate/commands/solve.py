@@ -1,0 +1,103 @@
+"""`manipuzzle solve`: plans for scenes, verified and written."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from converter.plan import write_plan
+from converter.scene import Scene
+from evaluate.inputs import read_scenes, require_writable
+from evaluate.names import safe_name
+from evaluate.output import log, print_json, print_line, print_table, progress
+from evaluate.trial import TrialOutcome, require_valid_start, run_trial, warm_up
+from planner import Settings
+
+
+@dataclass(frozen=True)
+class SolveResult:
+    """One line of the command's output.
+
+    Attributes:
+        scene: Name of the scene.
+        method: Name of the method.
+        seed: Seed of the trial.
+        status: How planning ended.
+        time_s: Planning time [s].
+        plan: The plan's file; None without a plan.
+        verified: Whether the plan passed verification; None without a plan.
+        path_length_m: Distance that the agent drives [m]; None without a plan.
+        pick_places: How often an object is picked and placed; None without a plan.
+        certificate: Why there is no plan, if the planner knows.
+    """
+
+    scene: str
+    method: str
+    seed: int
+    status: str
+    time_s: float
+    plan: str | None
+    verified: bool | None
+    path_length_m: float | None
+    pick_places: int | None
+    certificate: str | None
+
+
+def solve_to_file(scene: Scene, settings: Settings, seed: int, folder: Path) -> tuple[TrialOutcome, SolveResult]:
+    """Plans, verifies, and writes the plan, if there is one, to `folder`/{scene}-{method}-{seed}.json.
+
+    Raises:
+        InputError: the start of the scene is invalid, or the file cannot be written.
+    """
+    outcome = run_trial(scene, settings, seed)
+    plan = outcome.plan
+    file = folder / f"{safe_name(scene.name)}-{safe_name(settings.method)}-{seed}.json"
+    if plan.solved:
+        write_plan(file, plan)
+    return outcome, SolveResult(
+        scene=scene.name,
+        method=settings.method,
+        seed=seed,
+        status=plan.status.value,
+        time_s=plan.time_s,
+        plan=str(file) if plan.solved else None,
+        verified=outcome.verified,
+        path_length_m=plan.path_length if plan.solved else None,
+        pick_places=plan.pick_places if plan.solved else None,
+        certificate=plan.certificate,
+    )
+
+
+def run(
+    paths: Sequence[Path],
+    out: Path,
+    settings: Settings,
+    seed: int,
+    *,
+    preset: str | None,
+    tolerance: float | None,
+    as_json: bool,
+) -> bool:
+    """Runs the command; see `evaluate.cli.solve`."""
+    scenes = read_scenes(paths, preset, tolerance)
+    for path, scene in zip(paths, scenes, strict=True):
+        require_valid_start(scene, str(path))
+    require_writable(out)
+    warm_up(settings)
+    results: list[SolveResult] = []
+    with progress() as bar:
+        for scene in bar.track(scenes, description="scenes"):
+            outcome, result = solve_to_file(scene, settings, seed, out)
+            results.append(result)
+            for violation in outcome.violations or ():
+                log(f"{scene.name}: {violation.message}")
+    if as_json:
+        print_json({"results": [asdict(result) for result in results]})
+    else:
+        columns = ["scene", "method", "seed", "status", "time [s]", "verified", "path [m]", "pick-places", "plan"]
+        rows = [
+            (r.scene, r.method, r.seed, r.status, r.time_s, r.verified, r.path_length_m, r.pick_places, r.plan)
+            for r in results
+        ]
+        print_table(columns, rows)
+        print_line(f"{sum(r.verified is True for r in results)} of {len(results)} scenes solved")
+    return all(result.verified is True for result in results)

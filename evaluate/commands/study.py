@@ -1,0 +1,65 @@
+"""`manipuzzle study`: every scene with every method and seed."""
+
+from functools import partial
+from pathlib import Path
+
+from evaluate.output import log, print_json, print_line, print_table, progress
+from evaluate.store import TrialRow, TrialStore
+from evaluate.study import StudySummary, read_study, run_study, study_table
+from evaluate.tables import Cell, by_method
+from evaluate.trial import warm_up
+from pcg.files import write_text
+
+TABLE_FILE = "table.md"
+
+
+def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
+    """Runs the command; see `evaluate.cli.study`."""
+    study = read_study(spec)
+    with TrialStore(out) as store, progress("solved") as bar:
+        task = bar.add_task(study.name, total=study.size, solved="")
+        solved = 0
+
+        def on_trial(row: TrialRow | None) -> None:
+            nonlocal solved
+            if row is not None:
+                solved += row.verified is True
+            bar.update(task, advance=1, solved=f"{solved} solved")
+
+        try:
+            summary = run_study(study, store, workers, prepare=partial(warm_up, study.settings), on_trial=on_trial)
+        except KeyboardInterrupt:
+            log(f"interrupted: the finished trials are in {out}, the same command continues")
+            raise
+    write_text(out / TABLE_FILE, study_table(study, summary.cells))
+    if as_json:
+        print_json(_document(summary))
+    else:
+        rows = [(m, c.trials, c.solved, c.mean_time, c.time_deviation) for m, c in by_method(summary.cells).items()]
+        print_table(["method", "trials", "solved", "mean time [s]", "deviation [s]"], rows)
+        print_line(
+            f"{summary.trials} trials: {summary.run} run, {summary.skipped} skipped, {summary.solved} solved; "
+            f"table in {out / TABLE_FILE}"
+        )
+    return True
+
+
+def _document(summary: StudySummary) -> dict[str, object]:
+    return {
+        "trials": summary.trials,
+        "run": summary.run,
+        "skipped": summary.skipped,
+        "solved": summary.solved,
+        "by_method": {method: _cell_document(cell) for method, cell in by_method(summary.cells).items()},
+    }
+
+
+def _cell_document(cell: Cell) -> dict[str, object]:
+    return {
+        "trials": cell.trials,
+        "solved": cell.solved,
+        "rate": cell.rate,
+        "rate_interval_95": list(cell.rate_interval),
+        "mean_time_s": cell.mean_time,
+        "time_deviation_s": cell.time_deviation,
+    }

@@ -1,0 +1,81 @@
+"""What commands print: results on stdout as a table or as JSON, everything else on stderr."""
+
+import json
+import sys
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
+from rich.text import Text
+
+PIPE_WIDTH = 10_000
+"""Line width where no terminal limits it, so that no table is cut."""
+
+
+def print_json(document: Any) -> None:
+    """Prints one JSON document."""
+    sys.stdout.write(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], title: str | None = None) -> None:
+    """Prints a table: None as `-`, Booleans as yes and no, numbers to the right."""
+    console = _console(sys.stdout)
+    table = Table(title=title, box=SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    rows = [list(row) for row in rows]
+    for i, column in enumerate(columns):
+        numeric = any(_is_number(row[i]) for row in rows)
+        table.add_column(Text(column), justify="right" if numeric else "left", overflow="fold")
+    for row in rows:
+        # Text objects, because cells may hold square brackets, which rich would take for markup.
+        table.add_row(*(Text(_cell(value)) for value in row))
+    console.print(table)
+
+
+def print_line(text: str) -> None:
+    """Prints a line of results for people."""
+    sys.stdout.write(text + "\n")
+
+
+def log(text: str) -> None:
+    """Prints a line on stderr."""
+    sys.stderr.write(text + "\n")
+
+
+def progress(*extra: str) -> Progress:
+    """A progress display on stderr; it shows nothing unless that is a terminal.
+
+    Args:
+        extra: Names of fields that tasks show behind the time that remains.
+    """
+    console = Console(file=sys.stderr)
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        *(TextColumn(f"{{task.fields[{name}]}}") for name in extra),
+        console=console,
+        disable=not console.is_terminal,
+        transient=True,
+    )
+
+
+def _console(stream: Any) -> Console:
+    terminal = stream.isatty()
+    return Console(file=stream, width=None if terminal else PIPE_WIDTH, highlight=False)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.3g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,132 @@
+"""Trials as rows of the store, whatever became of them."""
+
+import functools
+import importlib.metadata
+import json
+import platform
+import zlib
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from converter.plan import Plan, Status, plan_document, plan_from_document
+from evaluate.store import TrialRow
+from evaluate.trial import Trial, TrialOutcome, run_trial
+from evaluate.workers import Failure
+
+LIBRARIES = ("manipuzzle", "numpy", "numba", "casadi", "ompl", "shapely")
+"""What a plan may depend on besides Python."""
+
+
+def run_recorded(trial: Trial) -> TrialRow:
+    """Runs a trial and describes it; the function that study workers call."""
+    started = datetime.now(UTC)
+    outcome = run_trial(trial.scene, trial.settings, trial.seed)
+    plan = outcome.plan
+    return _row(
+        trial,
+        status=plan.status,
+        verified=outcome.verified,
+        time_s=plan.time_s,
+        path_length_m=plan.path_length if plan.solved else None,
+        pick_places=plan.pick_places if plan.solved else None,
+        counters=json.dumps(dict(plan.counters)),
+        message=_message(outcome),
+        plan=zlib.compress(json.dumps(plan_document(plan)).encode()) if plan.solved else None,
+        started=started,
+        finished=datetime.now(UTC),
+    )
+
+
+def failed_row(trial: Trial, failure: Failure) -> TrialRow:
+    """The row of a trial that was stopped, crashed or raised."""
+    finished = datetime.now(UTC)
+    return _row(
+        trial,
+        status=Status(failure.kind),
+        verified=None,
+        time_s=failure.time_s,
+        path_length_m=None,
+        pick_places=None,
+        counters="{}",
+        message=failure.message,
+        plan=None,
+        started=finished - timedelta(seconds=failure.time_s),
+        finished=finished,
+    )
+
+
+def plan_of(row: TrialRow) -> Plan | None:
+    """The plan that a row holds; None without one.
+
+    Raises:
+        InputError: the stored plan is damaged.
+    """
+    if row.plan is None:
+        return None
+    return plan_from_document(json.loads(zlib.decompress(row.plan)), f"{row.scene}-{row.method}-{row.seed}")
+
+
+def _row(
+    trial: Trial,
+    *,
+    status: Status,
+    verified: bool | None,
+    time_s: float,
+    path_length_m: float | None,
+    pick_places: int | None,
+    counters: str,
+    message: str | None,
+    plan: bytes | None,
+    started: datetime,
+    finished: datetime,
+) -> TrialRow:
+    return TrialRow(
+        key=trial.key,
+        scene=trial.scene.name,
+        scene_hash=trial.scene.geometry_hash,
+        method=trial.settings.method,
+        seed=trial.seed,
+        settings=json.dumps(trial.settings.as_document(), sort_keys=True),
+        settings_hash=trial.settings_hash,
+        status=status.value,
+        verified=verified,
+        time_s=time_s,
+        path_length_m=path_length_m,
+        pick_places=pick_places,
+        counters=counters,
+        message=message,
+        plan=plan,
+        versions=_versions(),
+        machine=_machine(),
+        started=started.isoformat(timespec="milliseconds"),
+        finished=finished.isoformat(timespec="milliseconds"),
+    )
+
+
+def _message(outcome: TrialOutcome) -> str | None:
+    return outcome.violations[0].message if outcome.violations else outcome.plan.certificate
+
+
+@functools.cache
+def _versions() -> str:
+    found = {"python": platform.python_version()}
+    for library in LIBRARIES:
+        try:
+            found[library] = importlib.metadata.version(library)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    return json.dumps(found)
+
+
+@functools.cache
+def _machine() -> str:
+    return f"{_processor()}, {platform.system()} {platform.machine()}"
+
+
+def _processor() -> str:
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.is_file():
+        for line in cpuinfo.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or "unknown processor"
