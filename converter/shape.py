@@ -37,7 +37,7 @@ def denoised(values: npt.ArrayLike) -> FloatArray:
 
 
 def rotation(yaw: float) -> FloatArray:
-    """The (2, 2) matrix that turns a row vector counter-clockwise by `yaw` [rad]: `points @ rotation(yaw)`."""
+    """The (2, 2) matrix R for which `points @ R` turns row vectors counter-clockwise by `yaw` [rad]."""
     c, s = np.cos(yaw), np.sin(yaw)
     return np.array([[c, s], [-s, c]])
 

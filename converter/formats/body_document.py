@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from converter.scene import Body
-from converter.shape import FloatArray, Part, rotation
+from converter.shape import FloatArray, Part, denoised, rotation
 from pcg.errors import InputError
 from pcg.validation import Document, validated
 
@@ -159,10 +159,11 @@ def _fields(body: Body, outlines: list[dict[str, Any]], number: Callable[[float]
 
 def _outline(part: Part) -> dict[str, Any]:
     lower, upper = part.core.min(axis=0), part.core.max(axis=0)
-    offset = [short(value) for value in (lower + upper) / 2]
-    size = [short(value + 2 * part.edge_radius) for value in upper - lower]
+    # Sums are rounded to picometres, so that writing what was read gives the same text.
+    offset = [short(value) for value in denoised((lower + upper) / 2)]
+    size = [short(value) for value in denoised(upper - lower + 2 * part.edge_radius)]
     centred = np.abs(part.core - offset) * 2 + 2 * part.edge_radius
-    if not np.allclose(centred, size, rtol=0, atol=_NOISE):
+    if not np.allclose(centred, size, rtol=0, atol=10 * _NOISE):
         return {"polygon": [[short(x), short(y)] for x, y in part.core]}
     return {"size": size, "offset": offset} if any(offset) else {"size": size}
 

@@ -28,6 +28,7 @@ TOLERANCE = 1e-3
 
 _NEVER_COLLIDING = frozenset({"floor", "goal", "goal_visible", "goalLarge", "goalSmall", "sub-goal1"})
 _SIZE_COUNTS = {"ssBox": 4, "box": 3, "ssCylinder": 3, "cylinder": 2}
+_LENGTH_COUNTS = {"ssBox": 3, "box": 3, "ssCylinder": 2, "cylinder": 2}
 _ALIGNED = 1e-9
 
 
@@ -139,8 +140,8 @@ class _Tree:
             where = frame.places.get("shape", frame.places.get("type", frame.where))
             raise InputError(where, f"{frame.name}: shape {shape!r}; allowed are {', '.join(_SIZE_COUNTS)}")
         size = frame.numbers("size", (_SIZE_COUNTS[shape],))
-        if min(size) < 0 or max(size) > MAX_LENGTH:
-            raise InputError(frame.places["size"], f"{frame.name}: every size must be within 0..{MAX_LENGTH:g}")
+        if min(size[: _LENGTH_COUNTS[shape]]) <= 0 or min(size) < 0 or max(size) > MAX_LENGTH:
+            raise InputError(frame.places["size"], f"{frame.name}: sizes must be positive, at most {MAX_LENGTH:g}")
         try:
             if "ylinder" in shape:
                 return _Solid(frame, self.placed(frame), Part(np.zeros((1, 2)), size[1]), size[0])
@@ -220,7 +221,10 @@ def _color(frame: Frame) -> tuple[float, float, float] | None:
 def _goal(solid: _Solid, objects: Sequence[str]) -> Goal:
     name = "obj" if "obj" in objects or len(objects) != 1 else objects[0]
     if name not in objects:
-        raise InputError(solid.frame.where, f"no goal-object: none of the objects ({', '.join(objects)}) is called obj")
+        raise InputError(
+            solid.frame.where,
+            f"{solid.frame.name}: no goal-object: none of the objects ({', '.join(objects)}) is called obj",
+        )
     return Goal(name, solid.placed.pose.translation[:2], _aligned_size(solid))
 
 

@@ -151,10 +151,7 @@ def _frame(name: Token, tokens: "_Tokens") -> Frame:
 
 
 def _attribute(key: Token, tokens: "_Tokens") -> tuple[Value, str]:
-    if tokens.peek() in (":", "="):
-        tokens.next()
-        return tokens.value(key)
-    return tokens.value(key) if tokens.peek() == "[" else ("1", key.where)
+    return tokens.value(key) if tokens.peek() in (":", "=", "[") else ("1", key.where)
 
 
 class _Tokens:
@@ -184,6 +181,8 @@ class _Tokens:
         raise InputError(opening.where, f"{opening.text!r}: the closing `{closing}` is missing")
 
     def value(self, key: Token) -> tuple[Value, str]:
+        if self.peek() in (":", "="):
+            self.next()
         token = self.next()
         if token is None or token.text in (*_CLOSING.values(), ":", "="):
             raise InputError(key.where, f"{key.text!r} has no value")
