@@ -233,6 +233,10 @@ def test_goal_covered_though_its_rectangle_is_free():
     assert check_scene(low).valid
 
 
+sides = st.sampled_from([0.1, 0.2, 0.4, 0.8])
+places = st.tuples(*[st.floats(-0.6, 0.6).map(lambda x: round(x, 2))] * 2)
+
+
 @st.composite
 def parts(draw: st.DrawFn) -> Part:
     """Boxes, polygons with up to 7 vertices, capsules and discs, sharp and round."""
@@ -242,10 +246,6 @@ def parts(draw: st.DrawFn) -> Part:
     radius = draw(st.sampled_from([0.0, 0.02, 0.1])) if n > 2 else draw(st.sampled_from([0.02, 0.1]))
     angles = np.arange(n) * 2 * np.pi / n + draw(st.floats(0, 1))
     return Part(draw(st.floats(0.05, 0.6)) * np.column_stack([np.cos(angles), np.sin(angles)]), radius)
-
-
-sides = st.sampled_from([0.1, 0.2, 0.4, 0.8])
-places = st.tuples(*[st.floats(-0.6, 0.6).map(lambda x: round(x, 2))] * 2)
 
 
 @settings(max_examples=300)

@@ -2,19 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from converter.formats import read_scene
 from converter.plan import Plan, Segment, Status, Subgoal
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import FloatArray, Part
 from pcg.errors import InputError
 from planner.verify import Violation, ViolationKind, require_same_scene, verify
 
-Points = Sequence[tuple[float, float]]
+PUZZLES = Path(__file__).parents[2] / "data" / "puzzles"
 
 
 def body(name: str, x: float, y: float, *parts: Part, z: float = 0.1, yaw: float = 0.0) -> Body:
@@ -91,21 +93,15 @@ def test_a_correct_plan_is_accepted():
 
 
 def test_cube_free_is_solved_by_one_pick_and_place():
-    """In an empty room the object is carried straight from one corner to the other."""
-    scene = replace(
-        room(objects=[body("obj", 0.9, -1.5, Part.box((0.3, 0.3), 0.02))]),
-        goal=Goal("obj", np.array([-1.6, 1.6]), np.array([0.2, 0.2])),
-    )
+    """In the empty room of Cube-Free the object is carried straight from one corner to the other."""
+    scene = read_scene(PUZZLES / "cube-free.yaml")
     drive = move((0, 0), (1.4, 0), (1.4, -1.5), (1.25, -1.5))
     assert verify(scene, plan_of(scene, drive, carry("obj", (1.25, -1.5), (-1.25, 1.6)))) == []
 
 
 def test_corner_needs_a_regrasp():
-    """An object in a corner is brought out from the left, regrasped from the right and pushed into the other corner."""
-    scene = replace(
-        room(objects=[body("obj", 1.6, -1.6, Part.box((0.3, 0.3), 0.02))]),
-        goal=Goal("obj", np.array([-1.6, 1.6]), np.array([0.2, 0.2])),
-    )
+    """The object of Corner is brought out from the left, regrasped from the right and carried into the other corner."""
+    scene = read_scene(PUZZLES / "corner.yaml")
     out = carry("obj", (1.25, -1.6), (-0.35, 0))
     around = move((-0.35, 0), (-0.35, 0.5), (0.35, 0.5), (0.35, 0))
     into = carry("obj", (0.35, 0), (-1.25, 1.6))
