@@ -23,7 +23,7 @@ $(BIN)/uv:
 
 # The stamp makes a second `make` start at once; a changed lock or project file installs again.
 $(INSTALLED): pyproject.toml requirements.lock | $(BIN)/uv
-	$(BIN)/uv pip sync --quiet --python $(BIN)/python --require-hashes requirements.lock
+	$(BIN)/uv pip sync --quiet --compile-bytecode --python $(BIN)/python --require-hashes requirements.lock
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --editable .
 	touch $@
 

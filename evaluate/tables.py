@@ -1,9 +1,9 @@
 """Tables of a study: what happened per scene and method, as numbers and as Markdown."""
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from evaluate.number_text import three_digits
 from evaluate.statistics import deviation, mean, wilson_interval
 
 
@@ -74,15 +74,7 @@ class Cell:
             return "-"
         # 99.97 % must not be rounded to 100 %.
         share = "" if self.solved == self.trials else f" ({min(100 * self.rate, 99.9):.3g} %)"
-        return f"{seconds(average)} ± {seconds(spread)}{share}"
-
-
-def seconds(value: float) -> str:
-    """A time [s] with three significant digits down to 10 microseconds, never in exponent notation."""
-    if value <= 0:
-        return "0"
-    decimals = min(max(2 - math.floor(math.log10(value)), 0), 5)
-    return f"{value:.{decimals}f}"
+        return f"{three_digits(average)} ± {three_digits(spread)}{share}"
 
 
 def by_scene_and_method(results: Iterable[Result]) -> dict[tuple[str, str], Cell]:

@@ -1,5 +1,6 @@
 """`manipuzzle study`: every scene with every method and seed."""
 
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
@@ -32,10 +33,12 @@ def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
             log(f"interrupted: the finished trials are in {out}, the same command continues")
             raise
     write_text(out / TABLE_FILE, study_table(study, summary.cells))
+    totals = by_method(summary.cells)
+    by_name = {method: totals.get(method, Cell()) for method in study.methods}
     if as_json:
-        print_json(_document(summary))
+        print_json(_document(summary, by_name))
     else:
-        rows = [(m, c.trials, c.solved, c.mean_time, c.time_deviation) for m, c in by_method(summary.cells).items()]
+        rows = [(m, c.trials, c.solved, c.mean_time, c.time_deviation) for m, c in by_name.items()]
         print_table(["method", "trials", "solved", "mean time [s]", "deviation [s]"], rows)
         print_line(
             f"{summary.trials} trials: {summary.run} run, {summary.skipped} skipped, {summary.solved} solved; "
@@ -44,13 +47,13 @@ def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
     return True
 
 
-def _document(summary: StudySummary) -> dict[str, object]:
+def _document(summary: StudySummary, by_name: Mapping[str, Cell]) -> dict[str, object]:
     return {
         "trials": summary.trials,
         "run": summary.run,
         "skipped": summary.skipped,
         "solved": summary.solved,
-        "by_method": {method: _cell_document(cell) for method, cell in by_method(summary.cells).items()},
+        "by_method": {method: _cell_document(cell) for method, cell in by_name.items()},
     }
 
 

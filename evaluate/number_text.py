@@ -1,0 +1,13 @@
+"""Numbers as people read them."""
+
+import math
+
+MAX_DECIMALS = 5
+
+
+def three_digits(value: float) -> str:
+    """A number with three significant digits down to 0.001, never in exponent notation: `0.00123`, `12.3`, `1234`."""
+    if value == 0:
+        return "0"
+    decimals = min(max(2 - math.floor(math.log10(abs(value))), 0), MAX_DECIMALS)
+    return f"{value:.{decimals}f}"
