@@ -10,7 +10,7 @@
 [L] Levit, Ortiz-Haro, Toussaint: Solving Sequential Manipulation Puzzles by Finding Easier Subproblems, ICRA 2024.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,9 +27,21 @@ TOLERANCE = 1e-3
 """Collision tolerance of the authors' engine when the scenes were published [m]."""
 
 _NEVER_COLLIDING = frozenset({"floor", "goal", "goal_visible", "goalLarge", "goalSmall", "sub-goal1"})
-_SIZE_COUNTS = {"ssBox": 4, "box": 3, "ssCylinder": 3, "cylinder": 2}
-_LENGTH_COUNTS = {"ssBox": 3, "box": 3, "ssCylinder": 2, "cylinder": 2}
+_NO_SHAPE = frozenset({"none", "camera", "marker"})
 _ALIGNED = 1e-9
+
+
+def _disc(radius: float) -> Part:
+    return Part(np.zeros((1, 2)), radius)
+
+
+_SHAPES: dict[str, tuple[int, Callable[[tuple[float, ...]], tuple[Part, float]]]] = {
+    "ssBox": (4, lambda size: (Part.box(size[:2], size[3]), size[2])),
+    "box": (3, lambda size: (Part.box(size[:2]), size[2])),
+    "ssCylinder": (3, lambda size: (_disc(size[1]), size[0])),
+    "cylinder": (2, lambda size: (_disc(size[1]), size[0])),
+}
+"""Of each shape the count of the numbers of its `size`, and how these become a footprint and a height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +140,7 @@ class _Tree:
 
     def collides(self, frame: Frame) -> bool:
         """Whether the frame has a shape that is part of a wall, an object or the agent."""
-        if frame.name in _NEVER_COLLIDING or _shape(frame) in ("none", "camera", "marker"):
+        if frame.name in _NEVER_COLLIDING or _shape(frame) in _NO_SHAPE:
             return False
         has_joint = frame.attributes.get("joint", "none") != "none" and "size" in frame.attributes
         return has_joint or frame.attributes.get("contact", (0.0,)) not in ((0.0,), "false")
@@ -136,27 +148,23 @@ class _Tree:
     def solid(self, frame: Frame) -> _Solid:
         """The shape of a frame."""
         shape = _shape(frame)
-        if shape not in _SIZE_COUNTS:
+        if shape not in _SHAPES:
             where = frame.places.get("shape", frame.places.get("type", frame.where))
-            raise InputError(where, f"{frame.name}: shape {shape!r}; allowed are {', '.join(_SIZE_COUNTS)}")
-        size = frame.numbers("size", (_SIZE_COUNTS[shape],))
-        if min(size[: _LENGTH_COUNTS[shape]]) <= 0 or min(size) < 0 or max(size) > MAX_LENGTH:
-            raise InputError(frame.places["size"], f"{frame.name}: sizes must be positive, at most {MAX_LENGTH:g}")
+            raise InputError(where, f"{frame.name}: shape {shape!r}; allowed are {', '.join(_SHAPES)}")
+        count, build = _SHAPES[shape]
+        size = frame.numbers("size", (count,))
         try:
-            if "ylinder" in shape:
-                return _Solid(frame, self.placed(frame), Part(np.zeros((1, 2)), size[1]), size[0])
-            edge_radius = size[3] if shape == "ssBox" else 0.0
-            return _Solid(frame, self.placed(frame), Part.box(size[:2], edge_radius), size[2])
-        except InputError:
-            raise
+            part, height = build(size)
         except ValueError as error:
             raise InputError(frame.places["size"], f"{frame.name}: {error}") from None
+        if height <= 0 or max(size) > MAX_LENGTH:
+            raise InputError(frame.places["size"], f"{frame.name}: sizes must be positive, at most {MAX_LENGTH:g}")
+        return _Solid(frame, self.placed(frame), part, height)
 
 
 def _shape(frame: Frame) -> str:
-    shape = frame.attributes.get(
-        "shape", frame.attributes.get("type", "none" if "size" not in frame.attributes else "")
-    )
+    without = "" if "size" in frame.attributes else "none"
+    shape = frame.attributes.get("shape", frame.attributes.get("type", without))
     return shape if isinstance(shape, str) else " ".join(f"{number:g}" for number in shape)
 
 

@@ -17,7 +17,7 @@ from pcg.errors import InputError
 from pcg.files import read_text
 
 MAX_BYTES = 8_000_000
-MAX_FRAMES = 20_000
+MAX_FRAMES = 10_000
 MAX_FILES = 100
 
 Value: TypeAlias = tuple[float, ...] | str

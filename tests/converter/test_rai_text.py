@@ -90,7 +90,7 @@ def test_a_circle_of_includes_is_refused(tmp_path: Path):
 
 def test_the_number_of_frames_is_bounded(tmp_path: Path):
     """A file of a million frames is refused."""
-    with pytest.raises(InputError, match="more than 20000 frames"):
+    with pytest.raises(InputError, match="more than 10000 frames"):
         frames(tmp_path, "\n".join(f"f{i} {{}}" for i in range(MAX_FRAMES + 1)))
 
 
