@@ -83,6 +83,10 @@ class Problem:
         others = self._others(self._object_objects[index], configuration, index)
         return ConfigurationSpace(ObstacleSet.union([self._object_walls[index], *others]), self.scene.bounds)
 
+    def wall_space(self, index: int) -> ConfigurationSpace:
+        """Where the centre of object `index` might be if it were the only object."""
+        return ConfigurationSpace(self._object_walls[index], self.scene.bounds)
+
     def carry_space(self, configuration: Configuration, index: int, grasp: FloatArray) -> ConfigurationSpace:
         """Where the agent's centre may be while it holds object `index` with its own centre at `grasp` from its."""
         agent, carried = self.agent_space(configuration, held=index), self.object_space(configuration, index)

@@ -8,6 +8,23 @@ from converter.scene import Scene
 from planner.settings import Settings
 
 
+@dataclass(frozen=True)
+class Progress:
+    """What a search reports while it runs.
+
+    Attributes:
+        expansions: Expansions so far.
+        nodes: Configurations in the tree.
+        best_score: The highest score of them.
+        time_s: Wall time so far [s].
+    """
+
+    expansions: int
+    nodes: int
+    best_score: float
+    time_s: float
+
+
 @dataclass(frozen=True, eq=False)
 class PlanResult:
     """Outcome of one search.
@@ -18,7 +35,8 @@ class PlanResult:
         segments: The motion; empty unless solved.
         subgoals: The placement at the end of each carry, in order.
         certificate: With `infeasible`, what proves it; with `exhausted`, what ran out.
-        counters: Work done.
+        counters: Work done. Keys that end in `_s` are times [s], which a seed does not fix: `subgoal_time_s` is the
+            part of `time_s` spent on computing what subgoals are drawn from.
     """
 
     status: Status

@@ -22,9 +22,9 @@ from planner.frontier import Frontier, Node, Rejection
 from planner.heuristics import score
 from planner.pick_place import PickPlace, PickPlaceSolver, Region
 from planner.problem import Configuration, Problem
-from planner.result import PlanResult
+from planner.result import PlanResult, Progress
 from planner.settings import Settings
-from planner.subgoals import propose_subgoals
+from planner.subgoals import GENERATORS, propose_subgoals
 from planner.subproblems import subproblem_solvers
 
 
@@ -34,6 +34,7 @@ def solve(
     rng: np.random.Generator,
     *,
     should_stop: Callable[[], bool] = lambda: False,
+    on_progress: Callable[[Progress], object] = lambda _: None,
 ) -> PlanResult:
     """Searches for a plan that brings the goal-object to the goal.
 
@@ -42,11 +43,12 @@ def solve(
         settings: Method and budgets.
         rng: Source of all randomness.
         should_stop: Asked between subproblems; True ends the search with status `timeout`.
+        on_progress: Told after every expansion that did not end the search.
 
     Raises:
-        InputError: bodies of the scene overlap at the start.
+        InputError: bodies of the scene overlap at the start, or method Hum has no demonstration for the scene.
     """
-    return Search(Problem(scene), settings, rng, should_stop).run()
+    return Search(Problem(scene), settings, rng, should_stop, on_progress).run()
 
 
 class Search:
@@ -58,6 +60,7 @@ class Search:
         settings: Settings,
         rng: np.random.Generator,
         should_stop: Callable[[], bool] = lambda: False,
+        on_progress: Callable[[Progress], object] = lambda _: None,
     ) -> None:
         self.problem = problem
         self.settings = settings
@@ -66,9 +69,11 @@ class Search:
         self.counters: Counter[str] = Counter()
         self._frontier = Frontier(settings)
         self._rejection = Rejection(settings)
+        self._generator = GENERATORS[settings.generator](problem, settings)
         self._solver_for = subproblem_solvers(problem, settings, rng, self.counters, self._out_of_budget)
         self._started = time.perf_counter()
         self._should_stop = should_stop
+        self._on_progress = on_progress
 
     def run(self) -> PlanResult:
         """Expands configurations until one solves the problem, none is left or the budget is spent."""
@@ -91,6 +96,7 @@ class Search:
                 for step in self._solved_subproblems(subproblems, node.configuration, index):
                     self._add(step.applied_to(node.configuration), node, step)
             self._frontier.add(node)
+            self._on_progress(self._progress())
         return self._result(Status.EXHAUSTED)
 
     def _solved_subproblems(
@@ -98,9 +104,11 @@ class Search:
     ) -> list[PickPlace]:
         """`sub_solve` for each of `propose_subgoals`, the trivial one last."""
         placeable = partial(subproblems.placeable, index)
-        subgoals = propose_subgoals(self.problem, configuration, index, placeable, self.settings, self.rng)
+        proposal = propose_subgoals(
+            self.problem, self._generator, configuration, index, placeable, self.settings, self.rng
+        )
         steps = []
-        for subgoal in subgoals:
+        for subgoal in proposal.subgoals:
             if self._out_of_budget():
                 break
             steps.append(subproblems.pick_place(index, Region.point(subgoal)))
@@ -115,6 +123,10 @@ class Search:
         node = Node(configuration, parent, step, score(self.problem, configuration))
         self.nodes.append(node)
         self._frontier.add(node)
+
+    def _progress(self) -> Progress:
+        best = max(node.score for node in self.nodes)
+        return Progress(self.counters["expansions"], len(self.nodes), best, time.perf_counter() - self._started)
 
     def _out_of_budget(self) -> bool:
         return (
@@ -132,7 +144,7 @@ class Search:
             segments=segments_of(self.problem.scene, steps),
             subgoals=subgoals_of(self.problem.scene, steps),
             certificate=self._certificate(status),
-            counters=dict(self.counters),
+            counters={**self.counters, "subgoal_time_s": self._generator.time_s},
         )
 
     def _certificate(self, status: Status) -> str | None:

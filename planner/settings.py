@@ -5,8 +5,8 @@ from typing import Any, Literal
 
 from pcg.errors import InputError
 
-METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R")
-"""Names of the methods; letters after the plus: F filter, P prioritised selection, R rejection."""
+METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R", "Btl+FPR", "Hum+R")
+"""Names of the methods: subgoal generator (random, bottleneck, human), then F filter, P prioritised selection, R rejection."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,7 @@ class Settings:
         rejection_cell: Edge of the cells in which rejection compares object positions [m].
         expansions: How often one configuration may be expanded.
         max_expansions: Expansions in all after which the search gives up.
+        demonstrations: Folder with the files `{scene}.yaml` of method Hum; None for those that come with the product.
     """
 
     method: str = "Rnd+FPR"
@@ -50,6 +51,7 @@ class Settings:
     rejection_cell: float = 0.1
     expansions: int = 2
     max_expansions: int = 100_000
+    demonstrations: str | None = None
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:

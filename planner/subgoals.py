@@ -1,60 +1,106 @@
-"""Where an object could go next: candidates, the filter, and the draw ([L], section IV-B)."""
+"""Where an object could go next: candidates, the filter, and the draw ([L], section IV-B).
+
+What the methods differ in is where candidates come from: one file per generator (`subgoals_random`,
+`subgoals_bottleneck`, `subgoals_human`). The filter keeps the candidates at which the object would make the scene
+look most promising; a random draw from what is left bounds the number of subproblems.
+"""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from converter.shape import FloatArray
 from planner.heuristics import scores_if
-from planner.kernel import BoolArray
+from planner.kernel import BoolArray, IntArray
 from planner.problem import Configuration, Problem
 from planner.settings import Settings
-
-SubgoalGenerator = Callable[[Problem, Configuration, int, int, np.random.Generator], FloatArray]
-"""(problem, configuration, object index, n, rng) -> at most n candidate positions (k, 2) [m], world."""
-
-_DRAWS_PER_CANDIDATE = 50
-"""Uniform draws before a cluttered room is taken to have fewer free positions than asked for."""
+from planner.subgoals_human import HumanSubgoals
+from planner.subgoals_random import RandomSubgoals
 
 
-def random_candidates(
-    problem: Problem, configuration: Configuration, index: int, n: int, rng: np.random.Generator
-) -> FloatArray:
-    """At most `n` positions (k, 2), uniform over the free positions of object `index`."""
-    space = problem.object_space(configuration, index)
-    found = np.empty((0, 2))
-    for _ in range(_DRAWS_PER_CANDIDATE):
-        draws = rng.uniform(space.bounds[0], space.bounds[1], (n, 2))
-        found = np.vstack([found, draws[space.points_free(draws)]])
-        if len(found) >= n:
-            break
-    return found[:n]
+class SubgoalGenerator(Protocol):
+    """Proposes where an object could go; made once per problem.
+
+    Attributes:
+        time_s: Time spent so far on computing what candidates are drawn from [s].
+    """
+
+    time_s: float
+
+    def candidates(self, configuration: Configuration, index: int, n: int, rng: np.random.Generator) -> FloatArray:
+        """At most `n` positions (k, 2) [m], world, for object `index`."""
 
 
-GENERATORS: dict[str, SubgoalGenerator] = {"Rnd": random_candidates}
+def _bottleneck(problem: Problem, settings: Settings) -> SubgoalGenerator:
+    # SciPy's graphs take a fifth of a second to import, which the other methods need not pay.
+    from planner.subgoals_bottleneck import BottleneckSubgoals  # noqa: PLC0415  # see above
+
+    return BottleneckSubgoals(problem, settings)
+
+
+GENERATORS: dict[str, Callable[[Problem, Settings], SubgoalGenerator]] = {
+    "Rnd": RandomSubgoals,
+    "Btl": _bottleneck,
+    "Hum": HumanSubgoals,
+}
 """Subgoal generators by the first part of a method's name."""
 
 
-def filter_best(scores: FloatArray, share: float, rng: np.random.Generator) -> FloatArray:
-    """Indices of the best `share` of `scores` (n,), at least one; ties are broken at random."""
-    keep = max(1, round(share * len(scores)))
-    shuffled = rng.permutation(len(scores))
-    return np.asarray(shuffled[np.argsort(-scores[shuffled], kind="stable")][:keep])
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """Subgoals of one object in one configuration, and how they came about. The trivial subgoal comes on top.
+
+    Attributes:
+        candidates: (k, 2) [m], world: positions that the generator proposed and a carry may lead to.
+        scores: (k,) the score that the configuration would have with the object there.
+        passed: (p,) indices of the candidates that the filter kept; all of them without a filter.
+        drawn: (d,) indices of those that were drawn, in random order.
+    """
+
+    candidates: FloatArray
+    scores: FloatArray
+    passed: IntArray
+    drawn: IntArray
+
+    @property
+    def subgoals(self) -> FloatArray:
+        """The positions (d, 2) [m] to bring the object to."""
+        return self.candidates[self.drawn]
 
 
 def propose_subgoals(
     problem: Problem,
+    generator: SubgoalGenerator,
     configuration: Configuration,
     index: int,
     placeable: Callable[[FloatArray], BoolArray],
     settings: Settings,
     rng: np.random.Generator,
-) -> FloatArray:
-    """Positions (k, 2) [m] to bring object `index` to; the trivial subgoal, a regrasp, comes on top of them."""
-    generate = GENERATORS[settings.generator]
-    candidates = generate(problem, configuration, index, settings.candidates, rng)
+) -> Proposal:
+    """Positions to bring object `index` to.
+
+    Args:
+        problem: The problem.
+        generator: Where candidates come from.
+        configuration: Where everything is; the scores take the agent to stay there.
+        index: The object.
+        placeable: For each of some positions (n, 2) [m] whether a carry may lead there.
+        settings: Number of candidates, share that the filter keeps, number of subgoals.
+        rng: Source of all randomness.
+    """
+    candidates = generator.candidates(configuration, index, settings.candidates, rng)
     candidates = candidates[placeable(candidates)]
+    scores = scores_if(problem, configuration, index, candidates)
+    passed = np.arange(len(candidates))
     if "F" in settings.letters and len(candidates):
-        scores = scores_if(problem, configuration, index, candidates)
-        candidates = candidates[filter_best(scores, settings.keep_share, rng)]
-    return rng.permutation(candidates)[: settings.subgoals_per_object]
+        passed = filter_best(scores, settings.keep_share, rng)
+    return Proposal(candidates, scores, passed, rng.permutation(passed)[: settings.subgoals_per_object])
+
+
+def filter_best(scores: FloatArray, share: float, rng: np.random.Generator) -> IntArray:
+    """Indices of the best `share` of `scores` (n,), at least one; ties are broken at random."""
+    keep = max(1, round(share * len(scores)))
+    shuffled = rng.permutation(len(scores))
+    return np.asarray(shuffled[np.argsort(-scores[shuffled], kind="stable")][:keep])
