@@ -76,6 +76,18 @@ class ObstacleSet:
         """The same obstacles; corners that lie in one of them are dropped."""
         return replace(self, corners=self.corners[kernel.points_free(self.corners, *self.arrays)])
 
+    def near(self, box: FloatArray) -> Self:
+        """The obstacles whose boxes meet the rectangle `box` (2, 2) [m], lower and upper corner; no corners."""
+        keep = ((self.boxes[:, :2] < box[1]) & (self.boxes[:, 2:] > box[0])).all(axis=1)
+        counts = np.diff(self.first)
+        return type(self)(
+            self.vertices[np.repeat(keep, counts)],
+            np.concatenate([[0], np.cumsum(counts[keep])]),
+            self.rho[keep],
+            self.boxes[keep],
+            np.empty((0, 2)),
+        )
+
     def __len__(self) -> int:
         return len(self.rho)
 

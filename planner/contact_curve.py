@@ -1,10 +1,16 @@
-"""Grasps: the closed curve of agent positions that touch an object.
+"""Grasps: the closed curve of agent positions that touch an object, and which parts of it are free.
 
 The disc of radius R touches a convex part with edge radius r exactly where the signed distance to its core is R + r:
 offset edges joined by arcs. Along an edge the nearest core point moves and the normal stays; along an arc the normal
 turns and the point stays. For an object of several parts the curve of each counts where it stays clear of the others.
 Grasps are relative: agent centre minus object position.
+
+An obstacle's border consists of offset edges and arcs as well, so the curve enters and leaves it only where it meets
+one of their lines and circles. Between two such points all of it is free or none, and one test in the middle decides.
+No grasp is lost, however short its stretch: in a corridor as wide as the agent it is a single point.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,13 +20,47 @@ from planner.configuration_space import ObstacleSet
 from planner.kernel import points_free
 
 
+@dataclass(frozen=True, eq=False)
+class _Border:
+    """Lines and circles that contain the borders of some obstacles.
+
+    Attributes:
+        normals: (n, 2) unit normals of the lines.
+        offsets: (n,) [m]: the lines are normal . x = offset.
+        centres: (m, 2) [m] of the circles.
+        radii: (m,) [m].
+    """
+
+    normals: FloatArray
+    offsets: FloatArray
+    centres: FloatArray
+    radii: FloatArray
+
+    @classmethod
+    def of(cls, obstacles: ObstacleSet) -> "_Border":
+        owner = np.repeat(np.arange(len(obstacles)), np.diff(obstacles.first))
+        following = np.arange(1, len(owner) + 1)
+        following[obstacles.first[1:] - 1] = obstacles.first[:-1]
+        edges = obstacles.vertices[following] - obstacles.vertices
+        lengths = np.hypot(*edges.T)
+        proper = lengths > 0
+        normals = np.column_stack([edges[:, 1], -edges[:, 0]])[proper] / lengths[proper, None]
+        rho = obstacles.rho[owner]
+        return cls(
+            normals,
+            (normals * obstacles.vertices[proper]).sum(axis=1) + rho[proper],
+            obstacles.vertices[rho > 0],
+            rho[rho > 0],
+        )
+
+
 class ContactCurve:
     """All positions, relative to `body`, at which a disc of `radius` [m] touches it."""
 
     def __init__(self, body: Body, radius: float) -> None:
         reaches = [radius + part.edge_radius for part in body.parts]
         knots = [_knots(core, reach) for core, reach in zip(body.cores, reaches, strict=True)]
-        # A curve of several parts is sampled as one; the step from part to part has no length.
+        # A curve of several parts is one parametrised by arc length; the step from part to part has no length.
         lengths = np.cumsum([0.0, *(piece[-1, 0] for piece in knots)])
         self._knots = np.vstack(
             [piece + np.array([start, 0, 0, 0, 0]) for piece, start in zip(knots, lengths, strict=False)]
@@ -34,10 +74,44 @@ class ContactCurve:
         x, y, angle, reach = (np.interp(arc_length, position, column) for column in columns)
         return np.column_stack([x + reach * np.cos(angle), y + reach * np.sin(angle)])
 
-    def sample(self, n: int, rng: np.random.Generator) -> FloatArray:
-        """At most `n` grasps (k, 2) [m], one in each of `n` equal stretches of the curve, in random order."""
-        grasps = self.at(self.length * (np.arange(n) + rng.random(n)) / n)
-        return rng.permutation(grasps[points_free(grasps, *self._interior.arrays)])
+    def free_stretches(self, obstacles: ObstacleSet) -> FloatArray:
+        """The stretches (k, 2) [m], from and to in arc length, on which the agent lies in none of `obstacles`.
+
+        Args:
+            obstacles: Of the agent, relative to the object's position, without the object itself.
+        """
+        blockers = ObstacleSet.union([obstacles.near(self._box()), self._interior])
+        border = _Border.of(blockers)
+        cuts = np.unique(np.concatenate([self._knots[:, 0], *(_crossings(*p, border) for p in self._pieces())]))
+        free = points_free(self.at((cuts[1:] + cuts[:-1]) / 2), *blockers.arrays)
+        starts_free, ends_free = free & ~np.r_[False, free[:-1]], free & ~np.r_[free[1:], False]
+        return np.column_stack([cuts[:-1][starts_free], cuts[1:][ends_free]])
+
+    def sample_free(self, n: int, obstacles: ObstacleSet, rng: np.random.Generator) -> FloatArray:
+        """Up to about `n` grasps (k, 2) [m] clear of `obstacles`, in random order.
+
+        Every free stretch gets one, the others are spread over their whole length.
+        """
+        stretches = self.free_stretches(obstacles)
+        if len(stretches) == 0:
+            return np.empty((0, 2))
+        lengths = stretches[:, 1] - stretches[:, 0]
+        ends = np.cumsum(lengths)
+        spread = ends[-1] * (np.arange(n) + rng.random(n)) / n
+        owner = np.minimum(np.searchsorted(ends, spread), len(ends) - 1)
+        missing = np.setdiff1d(np.arange(len(ends)), owner)
+        extra = stretches[missing, 0] + rng.random(len(missing)) * lengths[missing]
+        arc_lengths = np.concatenate([stretches[owner, 1] - (ends[owner] - spread), extra])
+        return rng.permutation(self.at(arc_lengths))
+
+    def _pieces(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Consecutive knots with some curve between them."""
+        lengths = np.diff(self._knots[:, 0])
+        return [(self._knots[i], self._knots[i + 1]) for i in np.flatnonzero(lengths > 0)]
+
+    def _box(self) -> FloatArray:
+        nearest, reach = self._knots[:, 1:3], self._knots[:, 4].max()
+        return np.array([nearest.min(axis=0) - reach, nearest.max(axis=0) + reach])
 
 
 def _knots(core: FloatArray, reach: float) -> FloatArray:
@@ -52,10 +126,51 @@ def _knots(core: FloatArray, reach: float) -> FloatArray:
     rows, position = [], 0.0
     for i in range(n):
         following = normals[i + 1] if i + 1 < n else normals[0] + 2 * np.pi
-        corner = core[(i + 1) % n]
         rows.append([position, *core[i], normals[i], reach])
         position += lengths[i]
-        rows.append([position, *corner, normals[i], reach])
+        rows.append([position, *core[(i + 1) % n], normals[i], reach])
         position += reach * (following - normals[i])
     rows.append([position, *core[0], normals[0] + 2 * np.pi, reach])
     return np.array(rows)
+
+
+def _crossings(knot: FloatArray, following: FloatArray, border: _Border) -> FloatArray:
+    """Arc lengths at which the curve between two knots meets a line or circle of `border`; some may miss it."""
+    start, angle, reach = knot[0], knot[3], knot[4]
+    if angle == following[3]:
+        normal = np.array([np.cos(angle), np.sin(angle)])
+        origin = knot[1:3] + reach * normal
+        lengths = _on_line(origin, np.array([-normal[1], normal[0]]), border)
+        length = following[0] - start
+    else:
+        lengths = reach * ((_on_circle(knot[1:3], reach, border) - angle) % (2 * np.pi))
+        length = reach * (following[3] - angle)
+    return start + lengths[(lengths > 0) & (lengths < length)]
+
+
+def _on_line(origin: FloatArray, direction: FloatArray, border: _Border) -> FloatArray:
+    """Parameters t [m] at which origin + t direction, a unit vector, meets the border."""
+    speeds = border.normals @ direction
+    crossing = np.abs(speeds) > 1e-12
+    with_lines = (border.offsets - border.normals @ origin)[crossing] / speeds[crossing]
+    to_centres = border.centres - origin
+    middles = to_centres @ direction
+    halves = np.sqrt(np.maximum(border.radii**2 - (to_centres**2).sum(axis=1) + middles**2, 0.0))
+    return np.concatenate([with_lines, middles - halves, middles + halves])
+
+
+def _on_circle(centre: FloatArray, radius: float, border: _Border) -> FloatArray:
+    """Angles [rad] at which the circle meets the border."""
+    to_centres = border.centres - centre
+    distances = np.maximum(np.hypot(*to_centres.T), 1e-12)
+    cosines = np.concatenate(
+        [
+            (border.offsets - border.normals @ centre) / radius,
+            (radius**2 + distances**2 - border.radii**2) / (2 * radius * distances),
+        ]
+    )
+    directions = np.concatenate([border.normals, to_centres])
+    middles = np.arctan2(directions[:, 1], directions[:, 0])
+    meets = np.abs(cosines) <= 1
+    halves = np.arccos(cosines[meets])
+    return np.concatenate([middles[meets] - halves, middles[meets] + halves])

@@ -100,8 +100,10 @@ class ExactPickPlace:
 
     def _reachable_grasps(self, index: int) -> list[_Grasp]:
         if index not in self._grasps:
-            offsets = self._curves[index].sample(self._settings.grasp_starts, self._rng)
-            reached = self._from_agent.reaches(self._configuration.objects[index] + offsets)
+            position = self._configuration.objects[index]
+            obstacles = self._problem.agent_space(self._configuration, held=index).obstacles.moved(-position)
+            offsets = self._curves[index].sample_free(self._settings.grasp_starts, obstacles, self._rng)
+            reached = self._from_agent.reaches(position + offsets)
             self._grasps[index] = [
                 _Grasp(self._problem, self._configuration, index, offset) for offset in offsets[reached]
             ]

@@ -75,8 +75,7 @@ class SampledPickPlace:
         )
 
     def _path_to_grasp(self, index: int) -> FloatArray | None:
-        offsets = self._curves[index].sample(self._settings.grasp_starts, self._rng)
-        grasps = self._configuration.objects[index] + offsets
+        grasps = self._configuration.objects[index] + self._free_grasps(index)
         return self._motion(self._agent_space, self._configuration.agent, grasps, self._settings.reach_iterations)
 
     def _switch_configurations(self, index: int, region: Region) -> Iterator[tuple[FloatArray, FloatArray]]:
@@ -93,7 +92,7 @@ class SampledPickPlace:
             lower=region.lower,
             upper=region.upper,
         )
-        for offset in self._curves[index].sample(self._settings.grasp_starts, self._rng):
+        for offset in self._free_grasps(index):
             if self._should_stop():
                 return
             self._counters["nlp_calls"] += 1
@@ -102,6 +101,11 @@ class SampledPickPlace:
                 at_ends = np.array([grasp, grasp + placed - start])
                 if agent_space.points_free(at_ends).all() and object_space.point_free(placed):
                     yield grasp, placed
+
+    def _free_grasps(self, index: int) -> FloatArray:
+        position = self._configuration.objects[index]
+        obstacles = self._problem.agent_space(self._configuration, held=index).obstacles.moved(-position)
+        return self._curves[index].sample_free(self._settings.grasp_starts, obstacles, self._rng)
 
     def _motion(
         self, space: ConfigurationSpace, start: FloatArray, goals: FloatArray, iterations: int | None = None
