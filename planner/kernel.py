@@ -7,7 +7,8 @@ in closed form, so no motion is ever checked by sampling points along it:
 
 - rho <= 0: the segment a + t (b - a) is clipped by the half-planes n_i . x < c_i + rho (Cyrus and Beck 1978); it hits
   if an open interval of t is left.
-- rho > 0: it hits if it crosses the core, or if a vertex of one comes closer than rho to an edge of the other.
+- rho > 0: it hits if a vertex of one comes closer than rho to an edge of the other, if it crosses an edge of the core,
+  or if it starts in the core. No interior is needed to cross an edge, so cores as thin as rounding errors stop it too.
 
 Layout of an obstacle set of K polygons with M vertices in all, float64, world frame, [m]:
 `vertices (M, 2)` counter-clockwise; `first (K + 1,)` int64, polygon k owns rows first[k] to first[k + 1] - 1;
@@ -30,14 +31,17 @@ BoolArray = npt.NDArray[np.bool_]
 def _crosses_core(ax: float, ay: float, bx: float, by: float, polygon: FloatArray, rho: float) -> bool:
     """Whether the segment meets the interior of the polygon with its edges moved outward by `rho` (<= 0)."""
     n = len(polygon)
-    if n < 3:
-        return False
+    has_interior = False
     enter, leave = 0.0, 1.0
     dx, dy = bx - ax, by - ay
     for i in range(n):
         px, py = polygon[i]
         qx, qy = polygon[i + 1 if i + 1 < n else 0]
         nx, ny = qy - py, px - qx
+        if nx == 0.0 and ny == 0.0:
+            # Rounding has merged two vertices of a moved polygon.
+            continue
+        has_interior = n > 2
         slack = nx * (px - ax) + ny * (py - ay)
         if rho != 0.0:
             slack += rho * math.sqrt(nx * nx + ny * ny)
@@ -51,7 +55,7 @@ def _crosses_core(ax: float, ay: float, bx: float, by: float, polygon: FloatArra
             enter = max(enter, slack / speed)
         if enter >= leave:
             return False
-    return True
+    return has_interior
 
 
 @njit(cache=True)
@@ -66,10 +70,8 @@ def _squared_distance(px: float, py: float, ax: float, ay: float, dx: float, dy:
 
 
 @njit(cache=True)
-def _segments_cross(ax: float, ay: float, bx: float, by: float, polygon: FloatArray) -> bool:
-    """Whether the segment properly crosses the polygon's first edge; needed for polygons of two vertices only."""
-    px, py = polygon[0]
-    qx, qy = polygon[1]
+def _segments_cross(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
+    """Whether the segments a b and p q cross in a point that is an end of neither."""
     of_p = (bx - ax) * (py - ay) - (by - ay) * (px - ax)
     of_q = (bx - ax) * (qy - ay) - (by - ay) * (qx - ax)
     of_a = (qx - px) * (ay - py) - (qy - py) * (ax - px)
@@ -97,9 +99,9 @@ def segment_hits_polygon(ax: float, ay: float, bx: float, by: float, polygon: Fl
             return True
         if _squared_distance(bx, by, px, py, ex, ey, ee) < limit:
             return True
-    if n == 2:
-        return _segments_cross(ax, ay, bx, by, polygon)
-    return _crosses_core(ax, ay, bx, by, polygon, 0.0)
+        if _segments_cross(ax, ay, bx, by, px, py, qx, qy):
+            return True
+    return _crosses_core(ax, ay, ax, ay, polygon, 0.0)
 
 
 @njit(cache=True)
