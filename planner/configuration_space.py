@@ -56,8 +56,8 @@ class ObstacleSet:
 
     @classmethod
     def union(cls, sets: Iterable["ObstacleSet"]) -> Self:
-        """All obstacles of `sets`."""
-        members = list(sets)
+        """All obstacles of `sets`, none if there are no sets."""
+        members: list[ObstacleSet] = list(sets) or [cls.of([], [])]
         offsets = np.cumsum([0, *(len(s.vertices) for s in members)])
         first = [s.first[:-1] + offset for s, offset in zip(members, offsets[:-1], strict=True)]
         return cls(
