@@ -122,7 +122,10 @@ def _knots(core: FloatArray, reach: float) -> FloatArray:
     edges = np.roll(core, -1, axis=0) - core
     lengths = np.hypot(*edges.T)
     normals = np.arctan2(-edges[:, 0], edges[:, 1])
-    normals = normals[0] + np.cumsum(np.diff(normals, prepend=normals[0]) % (2 * np.pi))
+    turns = np.diff(normals, prepend=normals[0]) % (2 * np.pi)
+    # A convex polygon turns by at most pi; more is a straight angle at which rounding turns back.
+    turns[turns > 1.5 * np.pi] = 0.0
+    normals = normals[0] + np.cumsum(turns)
     rows, position = [], 0.0
     for i in range(n):
         following = normals[i + 1] if i + 1 < n else normals[0] + 2 * np.pi
