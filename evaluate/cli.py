@@ -21,6 +21,10 @@ BROKEN_PIPE = 141
 """What a shell reports of a program that a closed pipe ended: 128 + SIGPIPE."""
 
 
+class _ClosedPipe(Exception):  # noqa: N818 - no error
+    """Whoever reads stdout has stopped."""
+
+
 class _Commands(typer.core.TyperGroup):
     """Turns every way in which a command can end into an exit status and at most one line on stderr."""
 
@@ -36,13 +40,20 @@ class _Commands(typer.core.TyperGroup):
             _fail(str(error))
         except typer.TyperException as error:
             _fail(error.format_message())
-        except BrokenPipeError:
+        except (BrokenPipeError, _ClosedPipe):
             # Python flushes stdout once more at its end, which would fail again.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(BROKEN_PIPE)
         except OSError as error:
             _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
         sys.exit(status or 0)
+
+    def invoke(self, ctx: Any) -> Any:
+        # Typer would end with status 1, which says something else here.
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            raise _ClosedPipe from None
 
 
 def _fail(message: str) -> NoReturn:
@@ -173,7 +184,9 @@ def solve(
     scenes: Scenes,
     *,
     out: Out,
-    method: Annotated[str, typer.Option(metavar="NAME", help="Rnd+FPR, Rnd+FP, Rnd+FR or Rnd+R.")] = "Rnd+FPR",
+    method: Annotated[
+        str, typer.Option(metavar="NAME", help="Rnd+FPR, Rnd+FP, Rnd+FR, Rnd+R, Btl+FPR or Hum+R.")
+    ] = "Rnd+FPR",
     seed: Seed = 0,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9, help="For each scene.")] = 60.0,
     settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",

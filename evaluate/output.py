@@ -1,5 +1,6 @@
 """What commands print: results on stdout as a table or as JSON, everything else on stderr."""
 
+import io
 import json
 import sys
 from collections.abc import Iterable, Sequence
@@ -24,7 +25,6 @@ def print_json(document: Any) -> None:
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], title: str | None = None) -> None:
     """Prints a table: None as `-`, Booleans as yes and no, numbers to the right."""
-    console = _console(sys.stdout)
     table = Table(title=title, box=SIMPLE_HEAD, title_justify="left", pad_edge=False)
     rows = [list(row) for row in rows]
     for i, column in enumerate(columns):
@@ -33,7 +33,7 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], title:
     for row in rows:
         # Text objects, because cells may hold square brackets, which rich would take for markup.
         table.add_row(*(Text(_cell(value)) for value in row))
-    console.print(table)
+    sys.stdout.write(_rendered(table))
 
 
 def print_line(text: str) -> None:
@@ -66,9 +66,15 @@ def progress(*extra: str) -> Progress:
     )
 
 
-def _console(stream: Any) -> Console:
-    terminal = stream.isatty()
-    return Console(file=stream, width=None if terminal else PIPE_WIDTH, highlight=False)
+def _rendered(table: Table) -> str:
+    """The text of a table; rich itself would end the program when a pipe is closed, so it does not write."""
+    terminal = sys.stdout.isatty()
+    width = None if terminal else PIPE_WIDTH
+    console = Console(file=io.StringIO(), width=width, force_terminal=terminal, highlight=False)
+    with console.capture() as capture:
+        console.print(table)
+    lines = (line.rstrip() for line in capture.get().splitlines())
+    return "".join(f"{line}\n" for line in lines if line)
 
 
 def _is_number(value: object) -> bool:

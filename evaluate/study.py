@@ -26,7 +26,8 @@ from pydantic import Field, field_validator
 
 from converter.formats import yaml_text
 from converter.scene import Scene
-from evaluate.inputs import read_scenes
+from evaluate.inputs import read_scene_file
+from evaluate.names import require_distinct
 from evaluate.record import failed_row, run_recorded
 from evaluate.store import TrialRow, TrialStore
 from evaluate.tables import Cell, Result, by_scene_and_method, markdown
@@ -157,7 +158,8 @@ def read_study(path: Path) -> Study:
     """
     spec = validated(_Spec, yaml_text.parse(read_text(path), str(path)), str(path))
     paths = [scene for pattern in spec.scenes for scene in _matches(path, pattern)]
-    scenes = tuple(read_scenes(paths))
+    scenes = tuple(read_scene_file(scene) for scene in paths)
+    require_distinct([scene.name for scene in scenes], f"{path}: scenes")
     return Study(
         name=spec.name,
         scenes=scenes,

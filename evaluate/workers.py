@@ -12,6 +12,7 @@ stopped, and all tasks are queued at once.
 import contextlib
 import multiprocessing
 import multiprocessing.connection
+import multiprocessing.resource_tracker
 import os
 import resource
 import signal
@@ -215,6 +216,8 @@ class _Worker(Generic[Task, Result]):
 @contextlib.contextmanager
 def _interrupts_blocked() -> Iterator[None]:
     """Processes started inside never see Ctrl-C, which a terminal sends to all; the coordinator ends them."""
+    # The first process starts this helper too, and that would unblock the signal again.
+    multiprocessing.resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

@@ -1,0 +1,36 @@
+"""Stand-ins for the planner that worker processes can import: quick, and troublesome on demand."""
+
+import os
+import time
+from dataclasses import replace
+
+from evaluate.record import failed_row
+from evaluate.store import TrialRow
+from evaluate.trial import Trial
+from evaluate.workers import Failure
+
+TIMES_OUT, CRASHES, RAISES, UNSOLVED = range(4)
+"""Seeds with which `troubled` gets into trouble."""
+
+
+def quick(trial: Trial) -> TrialRow:
+    """Solves anything in a millisecond."""
+    row = failed_row(trial, Failure("error", "stands in", 0.001))
+    return replace(row, status="solved", verified=True, message=None, path_length_m=1.0, pick_places=1)
+
+
+def troubled(trial: Trial) -> TrialRow:
+    """Overruns, crashes, raises or fails, depending on the seed; solves the rest."""
+    if trial.seed == TIMES_OUT:
+        time.sleep(600)
+    if trial.seed == CRASHES:
+        os._exit(3)
+    if trial.seed == RAISES:
+        raise RuntimeError("a bug\nof two lines")
+    row = quick(trial)
+    return replace(row, status="exhausted", verified=None) if trial.seed == UNSOLVED else row
+
+
+def forbidden(trial: Trial) -> TrialRow:
+    """Must not be called."""
+    raise AssertionError(f"{trial.scene.name} was run again")

@@ -1,0 +1,84 @@
+"""Trials."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from converter.plan import Plan, plan_document
+from converter.scene import Scene
+from evaluate import trial as trial_module
+from evaluate.trial import Trial, TrialOutcome, require_valid_start, run_trial, warm_up
+from pcg.errors import InputError
+from planner import PlanResult, Settings
+from planner.verify import ViolationKind
+
+
+def without_times(plan: Plan) -> str:
+    """The text of a plan's file but for its time."""
+    return json.dumps(plan_document(replace(plan, time_s=0.0)))
+
+
+def test_a_trial_is_solved_and_verified(small_room: Scene):
+    """An easy scene is solved, and the plan names scene, method and seed."""
+    outcome = run_trial(small_room, Settings(method="Rnd+FP"), 7)
+    assert outcome.solved
+    assert outcome.verified is True
+    assert (outcome.plan.scene, outcome.plan.method, outcome.plan.seed) == ("small-room", "Rnd+FP", 7)
+
+
+def test_a_seed_fixes_the_plan(small_room: Scene):
+    """The same trial gives the same bytes, whatever the process did before."""
+    first = run_trial(small_room, Settings(), 3).plan
+    run_trial(small_room, Settings(), 4)
+    assert without_times(run_trial(small_room, Settings(), 3).plan) == without_times(first)
+
+
+def test_a_wrong_plan_does_not_count(small_room: Scene, small_plan: Plan, monkeypatch: pytest.MonkeyPatch):
+    """A plan that claims to solve the scene but fails verification is not solved."""
+    through_the_wall = (
+        *small_plan.segments[:-1],
+        replace(small_plan.segments[-1], path=np.array([[-0.8, 1.1], [1, 0]])),
+    )
+    result = PlanResult(small_plan.status, 0.0, through_the_wall)
+    monkeypatch.setattr(trial_module, "solve", lambda *_: result)
+    outcome = run_trial(small_room, Settings(), 0)
+    assert outcome.plan.solved
+    assert outcome.verified is False
+    assert not outcome.solved
+    assert ViolationKind.COLLISION in [violation.kind for violation in outcome.violations or ()]
+
+
+def test_without_a_plan_nothing_is_verified(small_plan: Plan):
+    """Neither verified nor refuted: there is no plan."""
+    outcome = TrialOutcome(small_plan, None)
+    assert outcome.verified is None
+    assert not outcome.solved
+
+
+def test_identity_of_a_trial(small_room: Scene):
+    """Geometry, name, method, seed and every setting make another trial; colours and presets' names do not."""
+    trial = Trial(small_room, Settings(), 0)
+    others = [
+        replace(trial, seed=1),
+        replace(trial, settings=Settings(method="Rnd+R")),
+        replace(trial, settings=Settings(time_limit=1.0)),
+        replace(trial, scene=replace(small_room, name="other")),
+        replace(trial, scene=replace(small_room, tolerance=0.0)),
+    ]
+    assert len({trial.key, *(other.key for other in others)}) == 6
+    assert replace(trial, scene=replace(small_room, source={"level": "x"})).key == trial.key
+
+
+def test_an_invalid_start_names_the_file(small_room: Scene):
+    """The message says where the scene came from and what overlaps."""
+    require_valid_start(small_room, "room.yaml")
+    inside = replace(small_room, objects=(small_room.objects[0].at(np.array([1.0, 0.0])), small_room.objects[1]))
+    with pytest.raises(InputError, match=r"^room\.yaml: object 'obj' overlaps 'wall'"):
+        require_valid_start(inside, "room.yaml")
+
+
+def test_warm_up_works_with_every_preset():
+    """The scene that warms the planner up is a valid one."""
+    warm_up(Settings())

@@ -1,0 +1,92 @@
+"""Who may import what."""
+
+import ast
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("pcg", "converter", "planner", "evaluate")
+"""In the order of dependence: each may import itself and those before it."""
+
+HOMES = {
+    "PIL": {"converter/image_file.py"},
+    "casadi": {"planner/nlp.py"},
+    "cv2": {"converter/raster.py", "converter/image_file.py"},
+    "numba": {"planner/kernel.py", "planner/visibility.py"},
+    "ompl": {"planner/motion_ompl.py"},
+    "pymunk": {"converter/preview.py"},
+    "rich": {"evaluate/output.py"},
+    "shapely": {"planner/verify.py"},
+    "typer": {"evaluate/cli.py"},
+    "yaml": {"converter/formats/yaml_text.py"},
+}
+"""The only modules that import a library."""
+
+EVERYWHERE = {"numpy", "pydantic"}
+DISTRIBUTIONS = {"PIL": "pillow", "cv2": "opencv-python-headless", "yaml": "pyyaml"}
+"""Names on the package index, where they differ from the import's."""
+
+MODULES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+
+
+def imports(path: Path) -> Iterator[str]:
+    """Dotted names that a module imports, anywhere in it."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            yield node.module or ""
+
+
+def libraries(path: Path) -> set[str]:
+    """Top-level names of what a module imports from outside of project and standard library."""
+    return {name.split(".")[0] for name in imports(path)} - set(PACKAGES) - sys.stdlib_module_names
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_imports_go_one_way(path: Path):
+    """Of pcg <- converter <- planner <- evaluate the later may import the earlier, never back."""
+    rank = PACKAGES.index(path.relative_to(ROOT).parts[0])
+    later = [name for name in imports(path) if name.split(".")[0] in PACKAGES[rank + 1 :]]
+    assert later == []
+
+
+def test_every_library_has_its_modules():
+    """A library is imported where its use is to be expected, by these modules and no others."""
+    found: dict[str, set[str]] = {}
+    for path in MODULES:
+        for library in libraries(path) - EVERYWHERE:
+            found.setdefault(library, set()).add(str(path.relative_to(ROOT)))
+    assert found == HOMES
+
+
+def test_every_library_is_declared():
+    """What is imported is what is installed, nothing less and nothing more."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = {requirement.split(">=")[0] for requirement in project["dependencies"]}
+    assert declared == {DISTRIBUTIONS.get(name, name) for name in HOMES.keys() | EVERYWHERE}
+
+
+@pytest.mark.parametrize(
+    ("module", "absent"),
+    [
+        ("pcg", "torch gymnasium numba yaml cv2 casadi ompl pymunk shapely rich"),
+        ("converter", "torch numba cv2 casadi ompl pymunk shapely PIL rich"),
+        ("planner", "torch cv2 casadi ompl pymunk PIL rich"),
+        ("evaluate.cli", "torch numpy pydantic numba cv2 casadi ompl pymunk shapely PIL rich"),
+        ("evaluate.commands.solve", "torch cv2 casadi ompl pymunk PIL"),
+    ],
+)
+def test_importing_is_light(module: str, absent: str):
+    """Libraries are loaded when they are used, so that programs start fast and need no graphics or learning."""
+    script = f"import sys, {module}; print(*sorted(set(sys.modules) & set({absent.split()!r})))"
+    found = subprocess.run(  # noqa: S603 - our own interpreter with our own script
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert found.stdout.split() == []
