@@ -26,9 +26,20 @@ import numpy as np
 
 from converter.shape import FloatArray
 from planner.configuration_space import ObstacleSet
+from planner.lgp_constraints import PolygonBlock, clearances, signed_distance, touch_gap
 
-FAR = 1e3
-"""Stands for the distance to an edge without length [m]."""
+__all__ = [
+    "MARGIN",
+    "TOUCH_GAP",
+    "PolygonBlock",
+    "SwitchProgram",
+    "SwitchQuery",
+    "SwitchStructure",
+    "build",
+    "clearances",
+    "signed_distance",
+    "solver",
+]
 
 MARGIN = 1e-6
 """Asked of every clearance beyond its bound [m], so that what the optimiser leaves violated is still free."""
@@ -46,30 +57,6 @@ _IPOPT_OPTIONS: dict[str, Any] = {
     "ipopt.hessian_approximation": "limited-memory",
     "ipopt.tol": 1e-7,
 }
-
-
-@dataclass(frozen=True)
-class PolygonBlock:
-    """How many polygons a set has, and how many vertices the largest of them."""
-
-    polygons: int
-    vertices: int
-
-    @classmethod
-    def of(cls, obstacles: ObstacleSet) -> "PolygonBlock":
-        """The structure of an obstacle set."""
-        return cls(len(obstacles), int(np.diff(obstacles.first).max(initial=1)))
-
-    @property
-    def size(self) -> int:
-        """Numbers that describe such a set: vertices and radii."""
-        return self.polygons * (2 * self.vertices + 1)
-
-    def pack(self, obstacles: ObstacleSet) -> FloatArray:
-        """The (size,) parameters of an obstacle set: all vertices, padded, then all radii."""
-        counts = np.diff(obstacles.first)
-        rows = obstacles.first[:-1, None] + np.minimum(np.arange(self.vertices), counts[:, None] - 1)
-        return np.concatenate([obstacles.vertices[rows].ravel(), obstacles.rho])
 
 
 @dataclass(frozen=True)
@@ -98,37 +85,6 @@ class SwitchProgram:
     constraints: ca.MX
 
 
-def signed_distance(vertices: int) -> ca.Function:
-    """(point (2,), polygon (2, vertices)) -> signed distance [m], negative inside the counter-clockwise polygon."""
-    point, polygon = ca.SX.sym("point", 2), ca.SX.sym("polygon", 2, vertices)
-    inside, outside = ca.SX(-FAR), ca.SX(FAR**2)
-    for i in range(vertices):
-        a, b = polygon[:, i], polygon[:, (i + 1) % vertices]
-        edge, offset = b - a, point - a
-        squared = ca.sumsqr(edge)
-        degenerate = squared < 1e-18
-        safe = ca.if_else(degenerate, 1.0, squared)
-        height = (edge[1] * offset[0] - edge[0] * offset[1]) / ca.sqrt(safe)
-        t = ca.fmin(1, ca.fmax(0, ca.dot(offset, edge) / safe))
-        inside = ca.fmax(inside, ca.if_else(degenerate, -FAR, height))
-        outside = ca.fmin(outside, ca.sumsqr(offset - t * edge))
-    # With one or two vertices there is no inside: the largest height is -FAR or at least 0.
-    is_inside = ca.logic_and(inside < 0, inside > -FAR)
-    # The small summand keeps the derivative finite on the outline.
-    distance = ca.if_else(is_inside, inside, ca.sqrt(outside + 1e-20))
-    return ca.Function("signed_distance", [point, polygon], [distance])
-
-
-def clearances(point: ca.MX, block: PolygonBlock, packed: ca.MX) -> ca.MX:
-    """(polygons,) signed distances of `point` (2,) less the radii."""
-    if block.polygons == 0:
-        return ca.MX(0, 1)
-    n_coordinates = 2 * block.vertices * block.polygons
-    polygons = ca.reshape(packed[:n_coordinates], 2, block.vertices * block.polygons)
-    distances = signed_distance(block.vertices).map(block.polygons)(ca.repmat(point, 1, block.polygons), polygons)
-    return distances.T - packed[n_coordinates:]
-
-
 def build(structure: SwitchStructure) -> SwitchProgram:
     """The program of a structure, for inspection or for `solver`."""
     x = ca.MX.sym("x", 4)
@@ -136,7 +92,7 @@ def build(structure: SwitchStructure) -> SwitchProgram:
     start, position = ca.MX.sym("start", 4), ca.MX.sym("position", 2)
     packed = [ca.MX.sym(name, block.size) for name, block in zip(("parts", "agent", "object"), blocks, strict=True)]
     a, z = x[:2], x[2:]
-    touch = ca.mmin(clearances(a - position, structure.parts, packed[0]))
+    touch = touch_gap(a - position, structure.parts, packed[0])
     at_pick = clearances(a, structure.agent_obstacles, packed[1])
     at_place = clearances(a + z - position, structure.agent_obstacles, packed[1])
     placed = clearances(z, structure.object_obstacles, packed[2])

@@ -49,6 +49,12 @@ class Configuration:
 class Problem:
     """A scene with its configuration-space obstacles; objects are addressed by index.
 
+    Attributes:
+        agent_walls: Obstacles that the walls are to the agent.
+        agent_objects: What each object is to the agent, relative to its own position.
+        object_walls: Obstacles that the walls are to each object.
+        object_objects: What object k is to object i at [i][k], relative to the position of k.
+
     Raises:
         InputError: bodies overlap at the start, or one is out of bounds.
     """
@@ -62,10 +68,10 @@ class Problem:
         for_agent = partial(agent_obstacles, scene.agent, tolerance=tolerance)
         for_objects = [partial(body_obstacles, moving, tolerance=tolerance) for moving in objects]
         _require_valid_start(scene, for_agent, for_objects)
-        self._agent_walls = _fixed(scene.walls, for_agent)
-        self._agent_objects = [for_agent(body) for body in objects]
-        self._object_walls = [_fixed(scene.walls, for_object) for for_object in for_objects]
-        self._object_objects = [[for_object(body) for body in objects] for for_object in for_objects]
+        self.agent_walls = _fixed(scene.walls, for_agent)
+        self.agent_objects = [for_agent(body) for body in objects]
+        self.object_walls = [_fixed(scene.walls, for_object) for for_object in for_objects]
+        self.object_objects = [[for_object(body) for body in objects] for for_object in for_objects]
         self._sight_walls = _fixed(scene.walls, partial(sight_obstacles, tolerance=tolerance))
         self.sight_objects = [sight_obstacles(body, tolerance) for body in objects]
 
@@ -75,17 +81,17 @@ class Problem:
 
     def agent_space(self, configuration: Configuration, held: int | None = None) -> ConfigurationSpace:
         """Where the agent's centre may be; a `held` object is no obstacle."""
-        others = self._others(self._agent_objects, configuration, held)
-        return ConfigurationSpace(ObstacleSet.union([self._agent_walls, *others]), self.scene.bounds)
+        others = self._others(self.agent_objects, configuration, held)
+        return ConfigurationSpace(ObstacleSet.union([self.agent_walls, *others]), self.scene.bounds)
 
     def object_space(self, configuration: Configuration, index: int) -> ConfigurationSpace:
         """Where the centre of object `index` may be; the agent is no obstacle."""
-        others = self._others(self._object_objects[index], configuration, index)
-        return ConfigurationSpace(ObstacleSet.union([self._object_walls[index], *others]), self.scene.bounds)
+        others = self._others(self.object_objects[index], configuration, index)
+        return ConfigurationSpace(ObstacleSet.union([self.object_walls[index], *others]), self.scene.bounds)
 
     def wall_space(self, index: int) -> ConfigurationSpace:
         """Where the centre of object `index` might be if it were the only object."""
-        return ConfigurationSpace(self._object_walls[index], self.scene.bounds)
+        return ConfigurationSpace(self.object_walls[index], self.scene.bounds)
 
     def carry_space(self, configuration: Configuration, index: int, grasp: FloatArray) -> ConfigurationSpace:
         """Where the agent's centre may be while it holds object `index` with its own centre at `grasp` from its."""
