@@ -1,0 +1,67 @@
+"""Small scenes built in code."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from converter.scene import Agent, Body, Goal, Scene
+from converter.shape import FloatArray, Part, rotation
+
+RADIUS = 0.2
+HEIGHT = 0.2
+
+
+def body(name: str, x: float, y: float, *parts: Part, yaw: float = 0.0, z: float = HEIGHT / 2) -> Body:
+    """A body of height 0.2, by default on the floor and a sharp box of side 0.2."""
+    return Body(name, np.array([x, y, z]), HEIGHT, parts or (Part.box((0.2, 0.2)),), yaw)
+
+
+def wall(x: float, y: float, sx: float, sy: float, edge_radius: float = 0.0) -> Body:
+    """A box-shaped wall, named after its place."""
+    return body(f"wall at {x:g}, {y:g}", x, y, Part.box((sx, sy), edge_radius))
+
+
+def room(
+    *walls: Body,
+    objects: Sequence[Body] = (),
+    agent: tuple[float, float] = (0.0, 0.0),
+    goal: tuple[float, float] = (1.5, 1.5),
+    goal_size: tuple[float, float] = (0.35, 0.35),
+    tolerance: float = 0.0,
+    half: float = 2.0,
+) -> Scene:
+    """A square room of side 2 `half` that only the bounds confine; by default the object stands at (1.5, -1.5)."""
+    objects = tuple(objects) or (body("obj", 1.5, -1.5),)
+    return Scene(
+        name="room",
+        bounds=np.array([[-half, -half], [half, half]]),
+        tolerance=tolerance,
+        agent=Agent(np.array(agent), RADIUS),
+        walls=walls,
+        objects=objects,
+        goal=Goal(objects[0].name, np.array(goal), np.array(goal_size)),
+    )
+
+
+def turned(scene: Scene, yaw: float) -> Scene:
+    """The scene turned about the origin; its bounds grow to hold the old ones, its goal does not turn."""
+    turn = rotation(yaw)
+
+    def moved(one: Body) -> Body:
+        x, y = one.position[:2] @ turn
+        return Body(one.name, np.array([x, y, one.position[2]]), one.height, one.parts, one.yaw + yaw)
+
+    return Scene(
+        name=scene.name,
+        bounds=scene.bounds * np.sqrt(2),
+        tolerance=scene.tolerance,
+        agent=Agent(scene.agent.position @ turn, scene.agent.radius),
+        walls=tuple(moved(one) for one in scene.walls),
+        objects=tuple(moved(one) for one in scene.objects),
+        goal=Goal(scene.goal.object, scene.goal.position @ turn, scene.goal.size),
+    )
+
+
+def vectors(*rows: Sequence[float]) -> FloatArray:
+    """Rows (n, 2) of plain numbers."""
+    return np.array(rows, dtype=float)
