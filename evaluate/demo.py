@@ -1,6 +1,7 @@
 """The whole pipeline on a few levels and on the nine puzzles: `python -m evaluate.demo --out out`."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from converter.formats import write_scene
@@ -13,17 +14,15 @@ from evaluate.commands.solve import solve_to_file
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.output import print_line, print_table
 from evaluate.trial import warm_up
+from pcg.data_folder import data_folder
+from pcg.errors import InputError
 from pcg.generate import GeneratorSettings
 from pcg.level_set import manifest_entry
 from planner import Settings, settings_for
 
 LEVELS = 12
-SEED = 0
 TIME_LIMIT = 10.0
-"""For each scene [s]."""
-
-PUZZLES = Path(__file__).parent.parent / "data" / "puzzles"
-"""Scene files that come with the source tree."""
+SEED = 0
 
 RESULT_COLUMNS = ["valid", "status", "time [s]", "path [m]", "pick-places", "verified"]
 
@@ -33,17 +32,36 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the results (default: out)")
     out = parser.parse_args().out
+    try:
+        run(out, sorted((data_folder() / "puzzles").glob("*.yaml")))
+    except InputError as error:
+        parser.error(str(error))
+
+
+def run(out: Path, puzzles: Sequence[Path], levels: int = LEVELS, time_limit: float = TIME_LIMIT) -> None:
+    """Runs the pipeline.
+
+    Args:
+        out: Folder for the results.
+        puzzles: Scene files.
+        levels: Number of levels to generate.
+        time_limit: For each scene [s].
+
+    Raises:
+        InputError: a scene cannot be read, or the folder cannot be written.
+    """
+    scenes = read_scenes(puzzles)
     require_writable(out)
-    settings = settings_for("fast", time_limit=TIME_LIMIT)
+    settings = settings_for("fast", time_limit=time_limit)
     warm_up(settings)
-    _levels(out, settings)
-    _puzzles(out, settings)
+    _levels(out, levels, settings)
+    _puzzles(out, scenes, settings)
     print_line(f"scenes, plans and pictures are in {out}/")
 
 
-def _levels(out: Path, settings: Settings) -> None:
+def _levels(out: Path, count: int, settings: Settings) -> None:
     rows = []
-    for generated in generate(LEVELS, SEED, GeneratorSettings(), out / "levels"):
+    for generated in generate(count, SEED, GeneratorSettings(), out / "levels"):
         level, entry = generated.level, manifest_entry(generated)
         level_painter(level)(out / "levels" / f"{level.name}.png")
         scene = scene_of(level)
@@ -52,10 +70,9 @@ def _levels(out: Path, settings: Settings) -> None:
     print_table(["level", "pushes", "occluded", *RESULT_COLUMNS], rows, title="Generated levels")
 
 
-def _puzzles(out: Path, settings: Settings) -> None:
-    scenes = read_scenes(sorted(PUZZLES.glob("*.yaml")))
+def _puzzles(out: Path, scenes: Sequence[Scene], settings: Settings) -> None:
     rows = [(scene.name, *_solved(scene, settings, out)) for scene in scenes]
-    print_table(["puzzle", *RESULT_COLUMNS], rows, title=f"Puzzles, {TIME_LIMIT:g} s each")
+    print_table(["puzzle", *RESULT_COLUMNS], rows, title=f"Puzzles, {settings.time_limit:g} s each")
 
 
 def _solved(scene: Scene, settings: Settings, out: Path) -> tuple[object, ...]:

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from converter.shape import Part
 from pcg.errors import InputError
 from planner import Settings, solve
 from planner.problem import Problem
+from planner.subgoals_human import HumanSubgoals
 from planner.verify import Violation, verify
 
 
@@ -75,18 +76,21 @@ def run_trial(scene: Scene, settings: Settings, seed: int) -> TrialOutcome:
     return TrialOutcome(plan, tuple(verify(scene, plan)) if plan.solved else None)
 
 
-def require_valid_start(scene: Scene, where: str) -> None:
-    """Refuses a scene whose initial configuration is invalid, as the planner would.
+def require_plannable(scene: Scene, settings: Settings, where: str) -> None:
+    """Refuses what the planner would refuse, before any planning.
 
     Args:
         scene: The scene.
-        where: What it was read from; it begins the message.
+        settings: Settings of the planner.
+        where: What the scene was read from; it begins the message.
 
     Raises:
-        InputError: naming the two bodies that overlap, or the one that is out of bounds.
+        InputError: two bodies overlap at the start, one is out of bounds, or the method lacks its demonstration.
     """
     try:
-        Problem(scene)
+        problem = Problem(scene)
+        if settings.generator == "Hum":
+            HumanSubgoals(problem, settings)
     except InputError as error:
         raise InputError(where, str(error).removeprefix(f"{scene.name}: ")) from None
 
@@ -104,7 +108,8 @@ def warm_up(settings: Settings) -> None:
         objects=(crate, obstacle),
         goal=Goal("crate", np.array([0.5, 0.0]), np.array([0.2, 0.2])),
     )
-    run_trial(scene, settings, 0)
+    # Nobody demonstrates a scene like this one.
+    run_trial(scene, replace(settings, method="Rnd+R") if settings.generator == "Hum" else settings, 0)
 
 
 def _digest(document: object) -> str:

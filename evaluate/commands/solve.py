@@ -9,7 +9,7 @@ from converter.scene import Scene
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.names import safe_name
 from evaluate.output import log, print_json, print_line, print_table, progress
-from evaluate.trial import TrialOutcome, require_valid_start, run_trial, warm_up
+from evaluate.trial import TrialOutcome, require_plannable, run_trial, warm_up
 from planner import Settings
 
 
@@ -80,7 +80,7 @@ def run(
     """Runs the command; see `evaluate.cli.solve`."""
     scenes = read_scenes(paths, preset, tolerance)
     for path, scene in zip(paths, scenes, strict=True):
-        require_valid_start(scene, str(path))
+        require_plannable(scene, settings, str(path))
     require_writable(out)
     warm_up(settings)
     results: list[SolveResult] = []

@@ -9,9 +9,9 @@ import pytest
 from converter.plan import Plan, plan_document
 from converter.scene import Scene
 from evaluate import trial as trial_module
-from evaluate.trial import Trial, TrialOutcome, require_valid_start, run_trial, warm_up
+from evaluate.trial import Trial, TrialOutcome, require_plannable, run_trial, warm_up
 from pcg.errors import InputError
-from planner import PlanResult, Settings
+from planner import METHODS, PRESETS, PlanResult, Settings
 from planner.verify import ViolationKind
 
 
@@ -73,12 +73,19 @@ def test_identity_of_a_trial(small_room: Scene):
 
 def test_an_invalid_start_names_the_file(small_room: Scene):
     """The message says where the scene came from and what overlaps."""
-    require_valid_start(small_room, "room.yaml")
+    require_plannable(small_room, Settings(), "room.yaml")
     inside = replace(small_room, objects=(small_room.objects[0].at(np.array([1.0, 0.0])), small_room.objects[1]))
     with pytest.raises(InputError, match=r"^room\.yaml: object 'obj' overlaps 'wall'"):
-        require_valid_start(inside, "room.yaml")
+        require_plannable(inside, Settings(), "room.yaml")
 
 
-def test_warm_up_works_with_every_preset():
-    """The scene that warms the planner up is a valid one."""
-    warm_up(Settings())
+def test_a_missing_demonstration_names_the_file(small_room: Scene):
+    """A method that needs to be shown how is refused for a scene that nobody solved."""
+    with pytest.raises(InputError, match=r"^room\.yaml: method Hum needs a demonstration"):
+        require_plannable(small_room, Settings(method="Hum+R"), "room.yaml")
+
+
+@pytest.mark.parametrize("settings", [*(Settings(method=method) for method in METHODS), *PRESETS.values()])
+def test_warm_up_works_with_every_method(settings: Settings):
+    """The scene that warms the planner up is a valid one, and needs no demonstration."""
+    warm_up(settings)

@@ -1,0 +1,51 @@
+"""The README's commands do what they say."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+NOT_RUN = ("make", "git clone", "cd ")
+"""Beginnings of lines that are not run here: they set up what runs the tests."""
+
+
+def lines() -> list[str]:
+    """The lines of all shell blocks, without comments and blank lines; a backslash joins two."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8").replace("\\\n", " ")
+    found = [line.strip() for block in BLOCK.findall(text) for line in block.splitlines()]
+    return [line for line in found if line and not line.startswith("#")]
+
+
+def test_make_targets_exist():
+    """Every `make` command names targets of the Makefile."""
+    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    named = {word for line in lines() if line.startswith("make") for word in line.partition("#")[0].split()[1:]}
+    assert named
+    assert named <= targets
+
+
+@pytest.mark.slow
+def test_commands_run_as_shown(tmp_path: Path):
+    """All commands run one after the other in an empty folder that holds the data; negatives are no failures."""
+    shutil.copytree(ROOT / "data", tmp_path / "data")
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    commands = [line for line in lines() if not line.startswith(NOT_RUN)]
+    assert any(line.startswith("manipuzzle") for line in commands)
+    for command in commands:
+        result = subprocess.run(  # noqa: S602 - the README's commands are shell commands
+            command,
+            shell=True,
+            cwd=tmp_path,
+            env={**os.environ, "PATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert result.returncode in {0, 1}, f"{command}\n{result.stderr}"
+        assert "Traceback" not in result.stderr, command
