@@ -9,8 +9,9 @@ one line `error: ...` on stderr and nothing on stdout; 130 after Ctrl-C, which k
 
 import os
 import sys
+from io import TextIOWrapper
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, NoReturn, cast
 
 import typer
 import typer.core
@@ -87,6 +88,9 @@ Tolerance = Annotated[
 
 def main() -> None:
     """Entry point of the `manipuzzle` program."""
+    for stream in (sys.stdout, sys.stderr):
+        # A name that the terminal's encoding lacks must not end the program.
+        cast("TextIOWrapper", stream).reconfigure(errors="replace")
     app()
 
 

@@ -14,13 +14,15 @@ from rich.text import Text
 
 from evaluate.number_text import three_digits
 
+__all__ = ["Progress", "log", "print_json", "print_line", "print_table", "progress"]
+
 PIPE_WIDTH = 10_000
 """Line width where no terminal limits it, so that no table is cut."""
 
 
 def print_json(document: Any) -> None:
     """Prints one JSON document."""
-    sys.stdout.write(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+    sys.stdout.write(json.dumps(document, indent=1, allow_nan=False) + "\n")
 
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], title: str | None = None) -> None:

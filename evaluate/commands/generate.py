@@ -34,6 +34,7 @@ def generate(count: int, seed: int, settings: GeneratorSettings, folder: Path) -
     levels: list[GeneratedLevel] = []
     try:
         with progress() as bar:
+            # What was appended before an interrupt stays in the list.
             levels.extend(bar.track(islice(random_levels(seed, settings), count), total=count, description="levels"))
     finally:
         if levels:

@@ -1,14 +1,17 @@
 """`manipuzzle study`: every scene with every method and seed."""
 
+import time
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from evaluate.output import log, print_json, print_line, print_table, progress
+from evaluate.output import Progress, log, print_json, print_line, print_table, progress
 from evaluate.store import TrialRow, TrialStore
 from evaluate.study import StudySummary, read_study, run_study, study_table
 from evaluate.tables import Cell, by_method
 from evaluate.trial import warm_up
+from evaluate.workers import WorkerStartError
+from pcg.errors import InputError
 from pcg.files import write_text
 
 TABLE_FILE = "table.md"
@@ -17,21 +20,17 @@ TABLE_FILE = "table.md"
 def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
     """Runs the command; see `evaluate.cli.study`."""
     study = read_study(spec)
-    with TrialStore(out) as store, progress("solved") as bar:
-        task = bar.add_task(study.name, total=study.size, solved="")
-        solved = 0
-
-        def on_trial(row: TrialRow | None) -> None:
-            nonlocal solved
-            if row is not None:
-                solved += row.verified is True
-            bar.update(task, advance=1, solved=f"{solved} solved")
-
+    with TrialStore(out) as store, progress("rate", "solved") as bar:
+        display = _Display(bar, study.name, study.size)
         try:
-            summary = run_study(study, store, workers, prepare=partial(warm_up, study.settings), on_trial=on_trial)
+            summary = run_study(
+                study, store, workers, prepare=partial(warm_up, study.settings), on_trial=display.on_trial
+            )
         except KeyboardInterrupt:
             log(f"interrupted: the finished trials are in {out}, the same command continues")
             raise
+        except WorkerStartError as error:
+            raise InputError(str(spec), f"{error}; memory_mb may be too small") from None
     write_text(out / TABLE_FILE, study_table(study, summary.cells))
     totals = by_method(summary.cells)
     by_name = {method: totals.get(method, Cell()) for method in study.methods}
@@ -45,6 +44,26 @@ def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
             f"table in {out / TABLE_FILE}"
         )
     return True
+
+
+class _Display:
+    """The progress of a study: trials of this run, their rate, and how many are solved."""
+
+    def __init__(self, bar: Progress, name: str, trials: int) -> None:
+        self._bar, self._left, self._run, self._solved = bar, trials, 0, 0
+        self._started = time.monotonic()
+        self._task = bar.add_task(name, total=trials, rate="", solved="")
+
+    def on_trial(self, row: TrialRow | None) -> None:
+        """Counts a trial; None is one that had been run before, which would spoil the estimate of the time left."""
+        if row is None:
+            self._left -= 1
+            self._bar.update(self._task, total=self._left)
+            return
+        self._run += 1
+        self._solved += row.verified is True
+        rate = self._run / (time.monotonic() - self._started)
+        self._bar.update(self._task, advance=1, rate=f"{rate:.3g}/s", solved=f"{self._solved} solved")
 
 
 def _document(summary: StudySummary, by_name: Mapping[str, Cell]) -> dict[str, object]:

@@ -1,6 +1,7 @@
 """The command line: what it prints and writes, and how it refuses bad input."""
 
 import json
+import operator
 import os
 import re
 import signal
@@ -233,6 +234,17 @@ def test_study_reports_and_resumes(run: Run, folder: Path):
     again = run("study", "spec.yaml", "--out", "study")
     assert again.exit_code == 0
     assert "2 trials: 0 run, 2 skipped, 2 solved" in again.stdout
+
+
+def test_workers_that_cannot_start_are_one_line(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch):
+    """Too little memory for a worker, here stood in for by a preparation that fails, ends the study clearly."""
+    monkeypatch.setattr("evaluate.commands.study.warm_up", operator.truediv)
+    (folder / "spec.yaml").write_text("name: s\nscenes: [room.yaml]\nmethods: [Rnd+R]\nseeds: 2\n")
+    result = run("study", "spec.yaml", "--out", "study")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == (
+        "error: spec.yaml: worker processes end at their start with exit status 1; memory_mb may be too small\n"
+    )
 
 
 def test_tables_are_whole_in_a_pipe(run: Run):
