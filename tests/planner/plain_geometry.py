@@ -1,6 +1,6 @@
 """Slow, plain twins of the planner's geometry: shapely distances, brute force and exact rational numbers."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import combinations, pairwise
 from typing import Any
@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from hypothesis import strategies as st
 
-from converter.scene import Scene
+from converter.scene import Body
 from converter.shape import FloatArray
 
 coordinates = st.floats(-1.0, 1.0).map(lambda x: round(x, 3))
@@ -79,12 +79,11 @@ def meets_interior(a: FloatArray, b: FloatArray, polygon: FloatArray) -> bool:
     return any(min(heights(ax + t * (bx - ax), ay + t * (by - ay))) > 0 for t in samples)
 
 
-def agent_penetration(scene: Scene, path: FloatArray, held: str | None = None) -> float:
-    """How deep the agent penetrates walls and objects at the start along `path` (n, 2) [m]; below 0 it is the gap."""
+def disc_penetration(path: FloatArray, radius: float, bodies: Iterable[Body]) -> float:
+    """How deep a disc penetrates `bodies` where they stand along `path` (n, 2) [m]; below 0 it is the gap."""
     line = polyline(path)
-    bodies = [*scene.walls, *(body for body in scene.objects if body.name != held)]
     depths = [
-        scene.agent.radius + part.edge_radius - float(shapely.distance(line, hull(core + body.position[:2])))
+        radius + part.edge_radius - float(shapely.distance(line, hull(core + body.position[:2])))
         for body in bodies
         for core, part in zip(body.cores, body.parts, strict=True)
     ]

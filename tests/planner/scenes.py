@@ -1,6 +1,7 @@
 """Small scenes built in code."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -43,23 +44,10 @@ def room(
     )
 
 
-def turned(scene: Scene, yaw: float) -> Scene:
-    """The scene turned about the origin; its bounds grow to hold the old ones, its goal does not turn."""
-    turn = rotation(yaw)
-
-    def moved(one: Body) -> Body:
-        x, y = one.position[:2] @ turn
-        return Body(one.name, np.array([x, y, one.position[2]]), one.height, one.parts, one.yaw + yaw)
-
-    return Scene(
-        name=scene.name,
-        bounds=scene.bounds * np.sqrt(2),
-        tolerance=scene.tolerance,
-        agent=Agent(scene.agent.position @ turn, scene.agent.radius),
-        walls=tuple(moved(one) for one in scene.walls),
-        objects=tuple(moved(one) for one in scene.objects),
-        goal=Goal(scene.goal.object, scene.goal.position @ turn, scene.goal.size),
-    )
+def turned(one: Body, yaw: float) -> Body:
+    """The body turned about the origin of the world."""
+    x, y = one.position[:2] @ rotation(yaw)
+    return replace(one, position=np.array([x, y, one.position[2]]), yaw=one.yaw + yaw)
 
 
 def vectors(*rows: Sequence[float]) -> FloatArray:
