@@ -4,8 +4,8 @@ from planner import Settings, solve
 result = solve(scene, Settings(method="Rnd+FPR"), numpy.random.default_rng(0))
 """
 
+from planner.methods import solve
 from planner.result import PlanResult
-from planner.search import solve
 from planner.settings import METHODS, PRESETS, Settings, settings_for
 
 __all__ = ["METHODS", "PRESETS", "PlanResult", "Settings", "settings_for", "solve"]

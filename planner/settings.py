@@ -4,14 +4,19 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
 from pcg.errors import InputError
+from planner.mbts_settings import MbtsSettings
 
-METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R", "Btl+FPR", "Hum+R")
-"""Names of the methods: subgoal generator (random, bottleneck, human), then F filter, P prioritised selection, R rejection."""
+METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R", "Btl+FPR", "Hum+R", "MBTS", "MBTS-rrt")
+"""Names of the methods.
+
+Of the forward search: subgoal generator (random, bottleneck, human), then F filter, P prioritised selection, R
+rejection. Of multi-bound tree search: trajectories by optimisation as published, or by RRT-Connect.
+"""
 
 
 @dataclass(frozen=True)
-class Settings:
-    """Parameters of Algorithm 1 and of what it calls.
+class Settings(MbtsSettings):
+    """Parameters of Algorithm 1 and of what it calls, and of multi-bound tree search.
 
     Counts, not seconds, bound the work, so that a seed fixes the plan; `time_limit` is only a guard.
 
