@@ -26,12 +26,14 @@ parameters. Building is apart from solving (`planner.lgp_solver`).
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
 
 import casadi as ca
 
 from planner.lgp_constraints import (
+    MARGIN,
+    TOUCH_GAP,
     accelerations,
     clearances,
     homing,
@@ -40,11 +42,8 @@ from planner.lgp_constraints import (
     velocities,
 )
 from planner.lgp_scene import LgpStructure, SceneSymbols
+from planner.lgp_weights import Weights
 from planner.logic import Action, Skeleton, Surface
-from planner.nlp import MARGIN, TOUCH_GAP
-
-COLLISION_SCALE = 10.0
-"""Scale of a penetration, in constraints and costs: 1 cm counts 0.1 (the authors' setting)."""
 
 
 class Bound(StrEnum):
@@ -53,27 +52,6 @@ class Bound(StrEnum):
     POSE = "pose"
     SEQUENCE = "sequence"
     PATH = "path"
-
-
-@dataclass(frozen=True)
-class Weights:
-    """Factors of the residuals whose squares are the cost.
-
-    Attributes:
-        acceleration: Of second differences along a path.
-        velocity: Of first differences along a path.
-        homing: Of the distance from the start, in every bound.
-        switch: Of the distance between consecutive switches, in pose and sequence.
-        touch: Scale of the touch equality.
-        placement: Scale of the placement and of the limits.
-    """
-
-    acceleration: float = 1.0
-    velocity: float = 0.1
-    homing: float = 0.01
-    switch: float = 0.01
-    touch: float = 100.0
-    placement: float = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +64,6 @@ class Program:
         residuals: Their sum of squares is the cost.
         equalities: Scaled; 0 where satisfied.
         inequalities: Scaled; >= 0 where satisfied.
-        n_switches: Agent positions at switches.
     """
 
     x: ca.MX
@@ -115,19 +92,30 @@ class _Slice:
     switch: Action | None
 
 
-def pose_program(structure: LgpStructure, skeleton: Skeleton, weights: Weights) -> Program:
-    """The bound that looks at the last switch only."""
+def moved_before(skeleton: Skeleton) -> tuple[int, ...]:
+    """The objects that the actions before the last one have grasped or placed, in order."""
+    return tuple(sorted({action.index for action in skeleton[:-1]}))
+
+
+def pose_program(structure: LgpStructure, moved: Sequence[int], action: Action, weights: Weights) -> Program:
+    """The bound that looks at the last switch only.
+
+    Args:
+        structure: Of the scene.
+        moved: Objects that earlier actions may have brought anywhere; among them that of a placement.
+        action: The last action.
+        weights: Factors and scales.
+    """
     scene = SceneSymbols(structure)
-    moved = tuple(sorted({action.index for action in skeleton[:-1]}))
     x = ca.MX.sym("x", 2 * (1 + len(moved)))
     objects = list(scene.objects)
     for k, index in enumerate(moved):
         objects[index] = x[2 * (k + 1) : 2 * (k + 2)]
-    last = _Slice(x[:2], tuple(objects), moved, skeleton[-1].index, skeleton[-1])
-    costs = [(weights.switch + weights.homing) * homing(x[:2], scene.start)]
-    costs += [(weights.switch + weights.homing) * homing(objects[k], scene.objects[k]) for k in moved]
+    last = _Slice(x[:2], tuple(objects), tuple(moved), action.index, action)
+    from_start = ca.vertcat(homing(x[:2], scene.start), *(homing(objects[k], scene.objects[k]) for k in moved))
     depths = ca.fmax(0, MARGIN - _collision_clearances(scene, [last]))
-    return _program(x, scene, [last], weights, [*costs, COLLISION_SCALE * depths], [])
+    costs = [weights.switch * from_start, weights.homing * from_start, weights.collision * depths]
+    return _program(x, scene, [last], weights, costs, [])
 
 
 def sequence_program(structure: LgpStructure, skeleton: Skeleton, weights: Weights) -> Program:
@@ -208,6 +196,6 @@ def _program(
         weights.touch * ca.vertcat(*gaps) if gaps else ca.MX(0, 1),
         ca.vertcat(
             *(weights.placement * margins for margins in (*placed, limits)),
-            *(COLLISION_SCALE * clearance for clearance in collisions),
+            *(weights.collision * clearance for clearance in collisions),
         ),
     )

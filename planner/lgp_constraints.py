@@ -24,6 +24,12 @@ from planner.configuration_space import ObstacleSet
 FAR = 1e3
 """Stands for the distance to an edge without length [m]."""
 
+MARGIN = 1e-6
+"""Asked of every clearance beyond its bound [m], so that what the optimiser leaves violated is still free."""
+
+TOUCH_GAP = 5e-7
+"""Gap of a touching grasp [m], the middle of what a plan may have beside the tolerance."""
+
 
 @dataclass(frozen=True)
 class PolygonBlock:

@@ -1,6 +1,7 @@
 """From the agent positions of a skeleton to the segments and subgoals of a plan."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,7 +15,7 @@ def waypoints(start: FloatArray, switches: FloatArray, phase_steps: int) -> Floa
     """Straight lines through `switches` (K, 2) from `start` (2,): (K * phase_steps, 2), every last of a phase exact."""
     ends = np.vstack([start, switches])
     steps = np.arange(1, phase_steps + 1)[:, None] / phase_steps
-    return np.vstack([a + steps * (b - a) for a, b in zip(ends[:-1], ends[1:], strict=True)])
+    return np.vstack([a + steps * (b - a) for a, b in pairwise(ends)])
 
 
 def phases(start: FloatArray, path: FloatArray, n_phases: int) -> list[FloatArray]:

@@ -23,9 +23,10 @@ import casadi as ca
 import numpy as np
 
 from converter.shape import FloatArray
-from planner.lgp import Bound, Program, Weights, path_program, pose_program, sequence_program
+from planner.lgp import Program, path_program, pose_program, sequence_program
 from planner.lgp_scene import LgpStructure
-from planner.logic import Skeleton
+from planner.lgp_weights import Weights
+from planner.logic import Action, Skeleton
 
 PENALTY = 10.0
 """Cost of one scaled unit of violation; the costs of a whole path are about 0.1."""
@@ -37,27 +38,6 @@ _IPOPT_OPTIONS: dict[str, Any] = {
     "ipopt.sb": "yes",
     "ipopt.tol": 1e-7,
 }
-
-
-@dataclass(frozen=True)
-class BoundStructure:
-    """What a solver is built for; all else are parameters.
-
-    Attributes:
-        bound: Which of the three programs.
-        scene: Structure of the scene.
-        skeleton: The actions.
-        weights: Factors of the costs and scales.
-        phase_steps: Configurations a phase; for the path only.
-        max_iterations: Of Ipopt.
-    """
-
-    bound: Bound
-    scene: LgpStructure
-    skeleton: Skeleton
-    weights: Weights
-    phase_steps: int
-    max_iterations: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,26 +57,20 @@ class BoundSolution:
     iterations: int
 
 
-def build(structure: BoundStructure) -> Program:
-    """The program of a bound."""
-    scene, skeleton, weights = structure.scene, structure.skeleton, structure.weights
-    if structure.bound is Bound.POSE:
-        return pose_program(scene, skeleton, weights)
-    if structure.bound is Bound.SEQUENCE:
-        return sequence_program(scene, skeleton, weights)
-    return path_program(scene, skeleton, weights, structure.phase_steps)
-
-
 class BoundSolver:
-    """A bound ready to be solved for any positions and shapes."""
+    """A program ready to be solved for any positions and shapes.
 
-    def __init__(self, structure: BoundStructure) -> None:
-        program = build(structure)
+    Args:
+        program: One of the bounds.
+        max_iterations: Of Ipopt.
+    """
+
+    def __init__(self, program: Program, max_iterations: int) -> None:
         self.n = program.x.numel()
         self._n_equalities, self._n_inequalities = program.equalities.numel(), program.inequalities.numel()
         parts = [ca.sumsqr(program.residuals), program.equalities, program.inequalities]
         self._evaluate = ca.Function("evaluate", [program.x, program.p], parts)
-        self._minimise = self._elastic(program, structure.max_iterations)
+        self._minimise = self._elastic(program, max_iterations)
 
     def evaluate(self, x: FloatArray, p: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Cost, equalities and inequalities of the program at `x`."""
@@ -144,6 +118,22 @@ class BoundSolver:
 
 
 @lru_cache(maxsize=256)
-def bound_solver(structure: BoundStructure) -> BoundSolver:
-    """The solver of a structure, built once."""
-    return BoundSolver(structure)
+def pose_solver(
+    structure: LgpStructure, moved: tuple[int, ...], action: Action, weights: Weights, max_iterations: int
+) -> BoundSolver:
+    """The solver of `pose_program`, built once for each structure."""
+    return BoundSolver(pose_program(structure, moved, action, weights), max_iterations)
+
+
+@lru_cache(maxsize=128)
+def sequence_solver(structure: LgpStructure, skeleton: Skeleton, weights: Weights, max_iterations: int) -> BoundSolver:
+    """The solver of `sequence_program`, built once for each structure."""
+    return BoundSolver(sequence_program(structure, skeleton, weights), max_iterations)
+
+
+@lru_cache(maxsize=32)
+def path_solver(
+    structure: LgpStructure, skeleton: Skeleton, weights: Weights, phase_steps: int, max_iterations: int
+) -> BoundSolver:
+    """The solver of `path_program`, built once for each structure."""
+    return BoundSolver(path_program(structure, skeleton, weights, phase_steps), max_iterations)

@@ -15,26 +15,24 @@ solves the scene is for `planner.verify` to say. There is one optimisation a nod
 the way from the start to an object leads around a wall, the path bound fails.
 """
 
-import heapq
 import time
 from collections import Counter, deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from itertools import count
 
 import numpy as np
 
 from converter.plan import Segment, Status, Subgoal
 from converter.scene import Scene
 from converter.shape import FloatArray
-from planner.lgp import Bound, Weights
+from planner.lgp import Bound, moved_before
 from planner.lgp_motion import phases, segments_of, subgoals_of, waypoints
 from planner.lgp_scene import LgpStructure, pack
-from planner.lgp_solver import BoundSolution, BoundStructure, bound_solver
-from planner.logic import Action, Domain, Skeleton, SymbolicState
+from planner.lgp_solver import BoundSolution, BoundSolver, path_solver, pose_solver, sequence_solver
+from planner.logic import Domain
 from planner.mbts_rrt import motions_between
+from planner.mbts_tree import Queue, TreeNode
 from planner.problem import Problem
-from planner.result import PlanResult
+from planner.result import PlanResult, Progress
 from planner.settings import Settings
 
 
@@ -44,6 +42,7 @@ def solve(
     rng: np.random.Generator,
     *,
     should_stop: Callable[[], bool] = lambda: False,
+    on_progress: Callable[[Progress], object] = lambda _: None,
 ) -> PlanResult:
     """Searches for a skeleton whose path bound is feasible.
 
@@ -52,72 +51,13 @@ def solve(
         settings: Method (`MBTS` or `MBTS-rrt`) and budgets.
         rng: Source of all randomness.
         should_stop: Asked between optimisations; True ends the search with status `timeout`.
+        on_progress: Told after every step that did not end the search; `best_score` counts the bounds passed by the
+            node that has come furthest.
 
     Raises:
         InputError: bodies of the scene overlap at the start.
     """
-    return MultiBoundTreeSearch(Problem(scene), settings, rng, should_stop).run()
-
-
-@dataclass(eq=False)
-class TreeNode:
-    """An action sequence.
-
-    Attributes:
-        state: What is held and what lies where after it.
-        parent: The sequence without its last action; None for the root.
-        action: The last action.
-        costs: Cost of each bound that has been computed.
-        solutions: Optimum of each of them.
-        infeasible: Whether one of them was infeasible.
-        queued: Whether the pose bound has been asked for.
-    """
-
-    state: SymbolicState
-    parent: "TreeNode | None" = None
-    action: Action | None = None
-    costs: dict[Bound, float] = field(default_factory=dict)
-    solutions: dict[Bound, FloatArray] = field(default_factory=dict)
-    infeasible: bool = False
-    queued: bool = False
-
-    @property
-    def path(self) -> list["TreeNode"]:
-        """The nodes from below the root to this one."""
-        return [] if self.parent is None else [*self.parent.path, self]
-
-    @property
-    def skeleton(self) -> Skeleton:
-        """The actions from the root to here."""
-        return tuple(node.action for node in self.path if node.action is not None)
-
-    @property
-    def pruned(self) -> bool:
-        """Whether this node or an ancestor is infeasible."""
-        return self.infeasible or (self.parent is not None and self.parent.pruned)
-
-
-class Queue:
-    """Nodes that wait for a bound, cheapest first; among equals the oldest."""
-
-    def __init__(self) -> None:
-        self._heap: list[tuple[float, int, TreeNode]] = []
-        self._order = count()
-
-    def push(self, node: TreeNode, cost: float) -> None:
-        """Enters a node."""
-        heapq.heappush(self._heap, (cost, next(self._order), node))
-
-    def pop(self) -> TreeNode | None:
-        """Takes the cheapest node out that has not been pruned."""
-        while self._heap:
-            node = heapq.heappop(self._heap)[-1]
-            if not node.pruned:
-                return node
-        return None
-
-    def __len__(self) -> int:
-        return sum(not node.pruned for _, _, node in self._heap)
+    return MultiBoundTreeSearch(Problem(scene), settings, rng, should_stop, on_progress).run()
 
 
 class MultiBoundTreeSearch:
@@ -129,6 +69,7 @@ class MultiBoundTreeSearch:
         settings: Settings,
         rng: np.random.Generator,
         should_stop: Callable[[], bool] = lambda: False,
+        on_progress: Callable[[Progress], object] = lambda _: None,
     ) -> None:
         self.problem = problem
         self.settings = settings
@@ -141,6 +82,7 @@ class MultiBoundTreeSearch:
         self._structure = LgpStructure.of(problem)
         self._parameters = pack(problem)
         self._should_stop = should_stop
+        self._on_progress = on_progress
         self._started = time.perf_counter()
 
     def run(self) -> PlanResult:
@@ -153,6 +95,7 @@ class MultiBoundTreeSearch:
             solution = self.step()
             if solution is not None:
                 return self._solved(*solution)
+            self._on_progress(self._progress())
         return self._result(Status.EXHAUSTED)
 
     def step(self) -> tuple[TreeNode, list[FloatArray]] | None:
@@ -189,9 +132,11 @@ class MultiBoundTreeSearch:
         node = self._pop(Bound.POSE)
         if node is None:
             return
-        moved = sorted({action.index for action in node.skeleton[:-1]})
-        start = np.concatenate([self.problem.initial.agent, self.problem.initial.objects[moved].ravel()])
-        solution = self._optimise(Bound.POSE, node, start)
+        skeleton, settings = node.skeleton, self.settings
+        moved = moved_before(skeleton)
+        solver = pose_solver(self._structure, moved, skeleton[-1], settings.mbts_weights, settings.mbts_max_iterations)
+        start = np.concatenate([self.problem.initial.agent, self.problem.initial.objects[list(moved)].ravel()])
+        solution = self._optimise(solver, start)
         if self._accepts(Bound.POSE, node, solution) and self.domain.is_solved(node.state):
             self.queues[Bound.SEQUENCE].push(node, node.costs[Bound.POSE])
 
@@ -199,7 +144,9 @@ class MultiBoundTreeSearch:
         node = self._pop(Bound.SEQUENCE)
         if node is None:
             return
-        solution = self._optimise(Bound.SEQUENCE, node, np.tile(self.problem.initial.agent, len(node.skeleton)))
+        skeleton, settings = node.skeleton, self.settings
+        solver = sequence_solver(self._structure, skeleton, settings.mbts_weights, settings.mbts_max_iterations)
+        solution = self._optimise(solver, np.tile(self.problem.initial.agent, len(skeleton)))
         if self._accepts(Bound.SEQUENCE, node, solution):
             self.queues[Bound.PATH].push(node, node.costs[Bound.SEQUENCE])
 
@@ -208,25 +155,21 @@ class MultiBoundTreeSearch:
         if node is None:
             return None
         motions = _PATH_BOUNDS[self.settings.method](self, node)
-        if motions is None:
-            node.infeasible = True
-            self.counters["path_infeasible"] += 1
-            return None
-        self.counters["path_feasible"] += 1
-        return node, motions
+        return None if motions is None else (node, motions)
 
     def path_by_optimisation(self, node: TreeNode) -> list[FloatArray] | None:
         """The motions of the phases from the optimised trajectory, started on lines through the sequence's switches."""
-        n = self.settings.mbts_phase_steps
+        skeleton, settings, n = node.skeleton, self.settings, self.settings.mbts_phase_steps
+        solver = path_solver(self._structure, skeleton, settings.mbts_weights, n, settings.mbts_max_iterations)
         start = waypoints(self.problem.initial.agent, node.solutions[Bound.SEQUENCE], n)
-        solution = self._optimise(Bound.PATH, node, start.ravel())
-        if solution.violation >= self.settings.mbts_max_violation:
+        solution = self._optimise(solver, start.ravel())
+        if not self._accepts(Bound.PATH, node, solution):
             return None
-        return phases(self.problem.initial.agent, solution.x.reshape(-1, 2), len(node.skeleton))
+        return phases(self.problem.initial.agent, node.solutions[Bound.PATH], len(skeleton))
 
     def path_by_rrt(self, node: TreeNode) -> list[FloatArray] | None:
         """The motions of the phases by RRT-Connect between the sequence's switches, exactly checked."""
-        return motions_between(
+        motions = motions_between(
             self.problem,
             node.skeleton,
             node.solutions[Bound.SEQUENCE],
@@ -235,27 +178,27 @@ class MultiBoundTreeSearch:
             self.counters,
             self._out_of_budget,
         )
+        self._record(Bound.PATH, node, feasible=motions is not None)
+        return motions
 
-    def _optimise(self, bound: Bound, node: TreeNode, start: FloatArray) -> BoundSolution:
-        settings = self.settings
-        solver = bound_solver(
-            BoundStructure(
-                bound, self._structure, node.skeleton, Weights(), settings.mbts_phase_steps, settings.mbts_max_iterations
-            )
-        )
-        noise = self.rng.normal(0.0, settings.mbts_noise, len(start))
+    def _optimise(self, solver: BoundSolver, start: FloatArray) -> BoundSolution:
+        noise = self.rng.normal(0.0, self.settings.mbts_noise, len(start))
         solution = solver.solve(start + noise, self._parameters)
         self.counters["nlp_calls"] += 1
         self.counters["nlp_iterations"] += solution.iterations
         return solution
 
     def _accepts(self, bound: Bound, node: TreeNode, solution: BoundSolution) -> bool:
-        """Records a bound; infeasible nodes drop out of all queues, and their subtrees with them."""
-        node.infeasible = solution.violation >= self.settings.mbts_max_violation
+        """Whether `solution` is feasible; enters it into the node."""
         node.costs[bound] = solution.cost + self._symbolic_cost(node)
         node.solutions[bound] = solution.x.reshape(-1, 2)
-        self.counters[f"{bound}_{'infeasible' if node.infeasible else 'feasible'}"] += 1
-        return not node.infeasible
+        return self._record(bound, node, feasible=solution.violation < self.settings.mbts_max_violation)
+
+    def _record(self, bound: Bound, node: TreeNode, *, feasible: bool) -> bool:
+        """Counts the outcome; an infeasible node drops out of all queues, and its subtree with it."""
+        node.infeasible = not feasible
+        self.counters[f"{bound}_{'feasible' if feasible else 'infeasible'}"] += 1
+        return feasible
 
     def _symbolic_cost(self, node: TreeNode) -> float:
         return self.settings.mbts_action_cost * len(node.path)
@@ -269,6 +212,11 @@ class MultiBoundTreeSearch:
             or self.counters["expansions"] >= self.settings.max_expansions
             or time.perf_counter() - self._started > self.settings.time_limit
         )
+
+    def _progress(self) -> Progress:
+        passed = sum(self.counters[f"{bound}_feasible"] > 0 for bound in Bound)
+        elapsed = time.perf_counter() - self._started
+        return Progress(self.counters["expansions"], self.counters["nodes"], float(passed), elapsed)
 
     def _solved(self, node: TreeNode, motions: list[FloatArray]) -> PlanResult:
         switches = np.array([motion[-1] for motion in motions])

@@ -12,10 +12,10 @@ import numpy as np
 from converter.shape import FloatArray
 from planner.configuration_space import ObstacleSet
 from planner.kernel import points_free
+from planner.lgp_constraints import TOUCH_GAP
 from planner.lgp_motion import after
 from planner.logic import Skeleton, Surface
 from planner.motion_ompl import rrt_connect
-from planner.nlp import TOUCH_GAP
 from planner.problem import Configuration, Problem
 from planner.settings import Settings
 from planner.shortcut import shortcut

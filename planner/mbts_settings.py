@@ -1,20 +1,33 @@
-"""Parameters of multi-bound tree search that [L] leaves open; the others are those of the authors' code."""
+"""Parameters of multi-bound tree search (`planner.mbts`) in one place, with the value chosen and why."""
 
 from dataclasses import dataclass
+
+from planner.lgp_weights import Weights
 
 
 @dataclass(frozen=True)
 class MbtsSettings:
     """Parameters of MBTS.
 
+    The threshold, the configurations a phase, the collision scale, the noise and the weights of acceleration, homing
+    and switches are those of the authors' code; [L] names none of them. The others are ours.
+
     Attributes:
-        mbts_max_depth: Actions of the longest skeleton. Eight are four placements, one more than any scene needs that
-            MBTS solves; with three objects there are 625 skeletons of that length.
+        mbts_max_depth: Actions of the longest skeleton. Eight are four placements, two more than the scenes need that
+            MBTS solves; with two objects there are some hundred skeletons up to that length.
         mbts_phase_steps: Configurations a phase of the path bound.
         mbts_max_violation: A bound is feasible below this sum of scaled violations.
         mbts_noise: Standard deviation [m] of what is added to the start of an optimisation.
-        mbts_action_cost: Symbolic cost of an action, added to the cost of every bound: shorter skeletons go first.
-        mbts_max_iterations: Iterations of one optimisation; 20 to 50 are usual.
+        mbts_action_cost: Symbolic cost of an action, added to the cost of every bound. Costs of sequences are below
+            0.01, so shorter skeletons go first.
+        mbts_max_iterations: Iterations of one optimisation; 15 to 50 are usual.
+        mbts_acceleration_weight: Factor of second differences along a path.
+        mbts_velocity_weight: Factor of first differences along a path; it keeps an agent from swinging out.
+        mbts_homing_weight: Factor of distances from the start.
+        mbts_switch_weight: Factor of distances between consecutive switches.
+        mbts_touch_scale: Scale of the gap at a pick [1/m].
+        mbts_placement_scale: Scale of the distance from goal, floor and limits [1/m].
+        mbts_collision_scale: Scale of penetrations [1/m].
     """
 
     mbts_max_depth: int = 8
@@ -23,3 +36,23 @@ class MbtsSettings:
     mbts_noise: float = 0.01
     mbts_action_cost: float = 0.1
     mbts_max_iterations: int = 100
+    mbts_acceleration_weight: float = 1.0
+    mbts_velocity_weight: float = 0.1
+    mbts_homing_weight: float = 0.01
+    mbts_switch_weight: float = 0.01
+    mbts_touch_scale: float = 100.0
+    mbts_placement_scale: float = 10.0
+    mbts_collision_scale: float = 10.0
+
+    @property
+    def mbts_weights(self) -> Weights:
+        """Factors and scales as the programs take them."""
+        return Weights(
+            acceleration=self.mbts_acceleration_weight,
+            velocity=self.mbts_velocity_weight,
+            homing=self.mbts_homing_weight,
+            switch=self.mbts_switch_weight,
+            touch=self.mbts_touch_scale,
+            placement=self.mbts_placement_scale,
+            collision=self.mbts_collision_scale,
+        )

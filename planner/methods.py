@@ -7,7 +7,7 @@ import numpy as np
 
 from converter.scene import Scene
 from planner import search
-from planner.result import PlanResult
+from planner.result import PlanResult, Progress
 from planner.settings import METHODS, Settings
 
 
@@ -15,17 +15,29 @@ class Solver(Protocol):
     """A search for a plan."""
 
     def __call__(
-        self, scene: Scene, settings: Settings, rng: np.random.Generator, *, should_stop: Callable[[], bool] = ...
-    ) -> PlanResult: ...
+        self,
+        scene: Scene,
+        settings: Settings,
+        rng: np.random.Generator,
+        *,
+        should_stop: Callable[[], bool],
+        on_progress: Callable[[Progress], object],
+    ) -> PlanResult:
+        """See `solve`."""
 
 
 def _mbts(
-    scene: Scene, settings: Settings, rng: np.random.Generator, *, should_stop: Callable[[], bool] = lambda: False
+    scene: Scene,
+    settings: Settings,
+    rng: np.random.Generator,
+    *,
+    should_stop: Callable[[], bool],
+    on_progress: Callable[[Progress], object],
 ) -> PlanResult:
     # CasADi and OMPL take half a second to import, which the other methods need not pay.
     from planner import mbts  # noqa: PLC0415  # see above
 
-    return mbts.solve(scene, settings, rng, should_stop=should_stop)
+    return mbts.solve(scene, settings, rng, should_stop=should_stop, on_progress=on_progress)
 
 
 SOLVERS: dict[str, Solver] = {method: _mbts if method.startswith("MBTS") else search.solve for method in METHODS}
@@ -38,6 +50,7 @@ def solve(
     rng: np.random.Generator,
     *,
     should_stop: Callable[[], bool] = lambda: False,
+    on_progress: Callable[[Progress], object] = lambda _: None,
 ) -> PlanResult:
     """Searches by the method of `settings` for a plan that brings the goal-object to the goal.
 
@@ -46,8 +59,9 @@ def solve(
         settings: Method and budgets.
         rng: Source of all randomness.
         should_stop: Asked between subproblems; True ends the search with status `timeout`.
+        on_progress: Told after every expansion that did not end the search.
 
     Raises:
         InputError: bodies of the scene overlap at the start.
     """
-    return SOLVERS[settings.method](scene, settings, rng, should_stop=should_stop)
+    return SOLVERS[settings.method](scene, settings, rng, should_stop=should_stop, on_progress=on_progress)

@@ -26,7 +26,7 @@ import numpy as np
 
 from converter.shape import FloatArray
 from planner.configuration_space import ObstacleSet
-from planner.lgp_constraints import PolygonBlock, clearances, signed_distance, touch_gap
+from planner.lgp_constraints import MARGIN, TOUCH_GAP, PolygonBlock, clearances, signed_distance, touch_gap
 
 __all__ = [
     "MARGIN",
@@ -40,12 +40,6 @@ __all__ = [
     "signed_distance",
     "solver",
 ]
-
-MARGIN = 1e-6
-"""Asked of every clearance beyond its bound [m], so that what the optimiser leaves violated is still free."""
-
-TOUCH_GAP = 5e-7
-"""Gap of a touching grasp [m], the middle of what a plan may have beside the tolerance."""
 
 _IPOPT_OPTIONS: dict[str, Any] = {
     "expand": True,
