@@ -10,7 +10,7 @@ from pathlib import Path
 
 from converter.plan import Plan, Status, plan_document, plan_from_document
 from evaluate.store import TrialRow
-from evaluate.trial import Trial, TrialOutcome, run_trial
+from evaluate.trial import Trial, TrialOutcome, run_trial, settings_hash
 from evaluate.workers import Failure
 
 LIBRARIES = ("manipuzzle", "numpy", "numba", "casadi", "ompl", "shapely")
@@ -87,7 +87,7 @@ def _row(
         method=trial.settings.method,
         seed=trial.seed,
         settings=json.dumps(trial.settings.as_document(), sort_keys=True),
-        settings_hash=trial.settings_hash,
+        settings_hash=settings_hash(trial.settings),
         status=status.value,
         verified=verified,
         time_s=time_s,

@@ -30,7 +30,7 @@ class TrialRow:
         method: Name of the method.
         seed: Seed of the trial.
         settings: Every setting, JSON.
-        settings_hash: `Trial.settings_hash`.
+        settings_hash: `evaluate.trial.settings_hash`.
         status: A `converter.plan.Status`.
         verified: Whether the plan passed verification; None without a plan.
         time_s: Planning time; for a trial that was stopped, its wall time [s].
@@ -108,7 +108,8 @@ class TrialStore:
         self._lock.close()
 
     def __contains__(self, key: str) -> bool:
-        return self._connection.execute("SELECT 1 FROM trial WHERE key = ?", (key,)).fetchone() is not None
+        with self._explained():
+            return self._connection.execute("SELECT 1 FROM trial WHERE key = ?", (key,)).fetchone() is not None
 
     def add(self, row: TrialRow) -> None:
         """Writes one row.
@@ -120,11 +121,16 @@ class TrialStore:
             self._connection.execute(_INSERT, astuple(row))
 
     def rows(self) -> Iterator[TrialRow]:
-        """All rows in the order of completion, one at a time."""
-        for values in self._connection.execute("SELECT * FROM trial ORDER BY rowid"):
-            row = TrialRow(*values)
-            # SQLite has no Booleans.
-            yield row if row.verified is None else replace(row, verified=bool(row.verified))
+        """All rows in the order of completion, one at a time.
+
+        Raises:
+            InputError: the file is damaged.
+        """
+        with self._explained():
+            for values in self._connection.execute("SELECT * FROM trial ORDER BY rowid"):
+                row = TrialRow(*values)
+                # SQLite has no Booleans.
+                yield row if row.verified is None else replace(row, verified=bool(row.verified))
 
     @contextlib.contextmanager
     def _explained(self) -> Iterator[None]:

@@ -3,7 +3,7 @@
 The specification is a YAML file:
 
     name: smoke
-    scenes: [../puzzles/p9-cube-free.yaml, ../corpus/*.yaml]
+    scenes: [../puzzles/cube-free.yaml, ../corpus/*.yaml]
     methods: [Rnd+FPR, Rnd+FP]
     seeds: 10              # 0..9; or a list
     settings: fast         # or faithful
@@ -16,7 +16,7 @@ Paths are relative to the specification, and may hold `*`, `?` and `**`.
 
 import contextlib
 import glob
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -31,7 +31,7 @@ from evaluate.names import require_distinct
 from evaluate.record import failed_row, run_recorded
 from evaluate.store import TrialRow, TrialStore
 from evaluate.tables import Cell, Result, by_scene_and_method, markdown
-from evaluate.trial import Trial
+from evaluate.trial import Trial, settings_hash
 from evaluate.workers import Failure, Limits, run_tasks
 from pcg.errors import InputError
 from pcg.files import read_text
@@ -90,7 +90,7 @@ class Study:
     name: str
     scenes: tuple[Scene, ...]
     methods: tuple[str, ...]
-    seeds: tuple[int, ...]
+    seeds: Sequence[int]
     settings: Settings
     limits: Limits
 
@@ -99,12 +99,17 @@ class Study:
         """Number of trials."""
         return len(self.scenes) * len(self.methods) * len(self.seeds)
 
+    @cached_property
+    def settings_by_method(self) -> dict[str, Settings]:
+        """The settings of each method."""
+        return {method: replace(self.settings, method=method) for method in self.methods}
+
     def trials(self) -> Iterator[Trial]:
         """Every trial; all scenes with the first seed come first, so an unfinished study is a smaller one."""
         for seed in self.seeds:
             for scene in self.scenes:
-                for method in self.methods:
-                    yield Trial(scene, replace(self.settings, method=method), seed)
+                for settings in self.settings_by_method.values():
+                    yield Trial(scene, settings, seed)
 
     def includes(self, row: TrialRow) -> bool:
         """Whether a row is one of the trials; a folder may also hold those of other settings or scenes."""
@@ -120,8 +125,7 @@ class Study:
 
     @cached_property
     def _settings_hashes(self) -> dict[str, str]:
-        scene = self.scenes[0]
-        return {m: Trial(scene, replace(self.settings, method=m), 0).settings_hash for m in self.methods}
+        return {method: settings_hash(settings) for method, settings in self.settings_by_method.items()}
 
     @cached_property
     def _seed_set(self) -> frozenset[int]:

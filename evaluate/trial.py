@@ -31,15 +31,10 @@ class Trial:
     seed: int
 
     @property
-    def settings_hash(self) -> str:
-        """Sixteen hexadecimal digits over every setting."""
-        return _digest(self.settings.as_document())
-
-    @property
     def key(self) -> str:
         """Identity: geometry and name of the scene, method, seed and settings."""
         scene = self.scene
-        return _digest([scene.geometry_hash, scene.name, self.settings.method, self.seed, self.settings_hash])
+        return _digest([scene.geometry_hash, scene.name, self.settings.method, self.seed, settings_hash(self.settings)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +58,11 @@ class TrialOutcome:
     def solved(self) -> bool:
         """Whether there is a plan that passed verification."""
         return self.verified is True
+
+
+def settings_hash(settings: Settings) -> str:
+    """Sixteen hexadecimal digits over every setting."""
+    return _digest(settings.as_document())
 
 
 def run_trial(scene: Scene, settings: Settings, seed: int) -> TrialOutcome:
@@ -95,21 +95,27 @@ def require_plannable(scene: Scene, settings: Settings, where: str) -> None:
         raise InputError(where, str(error).removeprefix(f"{scene.name}: ")) from None
 
 
-def warm_up(settings: Settings) -> None:
-    """Solves a small scene, so that no trial's time includes loading and compiling the planner."""
-    obstacle = Body("obstacle", np.array([0.5, 0.5, 0.1]), 0.2, (Part.box((0.2, 0.2)),))
-    crate = Body("crate", np.array([0.0, 0.0, 0.1]), 0.2, (Part.box((0.2, 0.2)),))
-    scene = Scene(
+def warm_up(*every: Settings) -> None:
+    """Solves a small scene with each of the settings, so that no trial's time includes loading and compiling."""
+    for settings in every:
+        # Nobody demonstrates a scene like this one.
+        run_trial(_warm_up_scene(), replace(settings, method="Rnd+R") if settings.generator == "Hum" else settings, 0)
+
+
+def _warm_up_scene() -> Scene:
+    cube = (Part.box((0.2, 0.2)),)
+    return Scene(
         name="warm-up",
         bounds=np.array([[-1.0, -1.0], [1.0, 1.0]]),
         tolerance=1e-4,
         agent=Agent(np.array([-0.5, 0.0]), 0.1),
-        walls=(Body("wall", np.array([0.0, 0.5, 0.1]), 0.2, (Part.box((0.2, 0.2)),)),),
-        objects=(crate, obstacle),
-        goal=Goal("crate", np.array([0.5, 0.0]), np.array([0.2, 0.2])),
+        walls=(Body("wall", np.array([0.0, 0.5, 0.1]), 0.2, cube),),
+        objects=(
+            Body("obj", np.array([0.0, 0.0, 0.1]), 0.2, cube),
+            Body("obstacle", np.array([0.5, 0.5, 0.1]), 0.2, cube),
+        ),
+        goal=Goal("obj", np.array([0.5, 0.0]), np.array([0.2, 0.2])),
     )
-    # Nobody demonstrates a scene like this one.
-    run_trial(scene, replace(settings, method="Rnd+R") if settings.generator == "Hum" else settings, 0)
 
 
 def _digest(document: object) -> str:

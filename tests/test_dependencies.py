@@ -15,7 +15,13 @@ PACKAGES = ("pcg", "converter", "planner", "evaluate")
 
 HOMES = {
     "PIL": {"converter/image_file.py"},
-    "casadi": {"planner/nlp.py"},
+    "casadi": {
+        "planner/lgp.py",
+        "planner/lgp_constraints.py",
+        "planner/lgp_scene.py",
+        "planner/lgp_solver.py",
+        "planner/nlp.py",
+    },
     "cv2": {"converter/raster.py", "converter/image_file.py"},
     "numba": {"planner/kernel.py", "planner/subgoals_bottleneck.py", "planner/visibility.py"},
     "ompl": {"planner/motion_ompl.py"},

@@ -22,10 +22,9 @@ def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
     study = read_study(spec)
     with TrialStore(out) as store, progress("rate", "solved") as bar:
         display = _Display(bar, study.name, study.size)
+        prepare = partial(warm_up, *study.settings_by_method.values())
         try:
-            summary = run_study(
-                study, store, workers, prepare=partial(warm_up, study.settings), on_trial=display.on_trial
-            )
+            summary = run_study(study, store, workers, prepare=prepare, on_trial=display.on_trial)
         except KeyboardInterrupt:
             log(f"interrupted: the finished trials are in {out}, the same command continues")
             raise
