@@ -1,0 +1,70 @@
+"""Settings: methods, presets, and what is refused."""
+
+import json
+from dataclasses import fields
+
+import pytest
+
+from pcg.errors import InputError
+from planner.settings import METHODS, PRESETS, Settings, settings_for
+
+
+@pytest.mark.parametrize(
+    ("method", "generator", "letters"),
+    [("Rnd+FPR", "Rnd", "FPR"), ("Rnd+R", "Rnd", "R"), ("Btl+FPR", "Btl", "FPR"), ("Hum+R", "Hum", "R")],
+)
+def test_the_name_of_a_method_says_what_it_does(method: str, generator: str, letters: str):
+    """Generator before the plus, letters behind it."""
+    settings = Settings(method=method)
+    assert (settings.generator, settings.letters) == (generator, letters)
+
+
+def test_all_published_methods_are_there():
+    """The methods of the published comparison are allowed."""
+    published = {"Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R", "Btl+FPR", "Hum+R", "MBTS"}
+    assert published <= set(METHODS)
+    assert [Settings(method=method).method for method in METHODS] == list(METHODS)
+
+
+@pytest.mark.parametrize("method", ["", "rnd+fpr", "Rnd", "Rnd+RPF", "Foo+R"])
+def test_unknown_methods_are_refused(method: str):
+    """The message names what was found and what is allowed."""
+    with pytest.raises(InputError, match=r"method: found '.*', allowed are Rnd\+FPR, "):
+        Settings(method=method)
+
+
+@pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan")])
+def test_time_limits_are_positive(seconds: float):
+    """A limit of nothing is refused."""
+    with pytest.raises(InputError, match=r"time limit: found .*, must be > 0"):
+        Settings(time_limit=seconds)
+
+
+@pytest.mark.parametrize("preset", ["fast", "faithful"])
+def test_presets_are_named_after_themselves(preset: str):
+    """`settings_for` gives the preset with changes, the others stay."""
+    settings = settings_for(preset, method="Rnd+R", time_limit=5.0)
+    assert (settings.preset, settings.method, settings.time_limit) == (preset, "Rnd+R", 5.0)
+    unchanged = [field.name for field in fields(Settings) if field.name not in {"method", "time_limit"}]
+    assert all(getattr(settings, name) == getattr(PRESETS[preset], name) for name in unchanged)
+
+
+def test_unknown_presets_are_refused():
+    """The message names both presets."""
+    with pytest.raises(InputError, match="settings: found 'slow', allowed are fast, faithful"):
+        settings_for("slow")
+    with pytest.raises(InputError, match="method: found"):
+        settings_for("fast", method="none")
+
+
+def test_both_presets_limit_repeats_as_published():
+    """Two equal configurations, two expansions of one."""
+    for settings in PRESETS.values():
+        assert (settings.equal_configurations, settings.expansions) == (2, 2)
+
+
+def test_the_document_holds_every_field():
+    """Plan files record each parameter as a plain value."""
+    document = Settings().as_document()
+    assert set(document) == {field.name for field in fields(Settings)}
+    assert Settings(**json.loads(json.dumps(document))) == Settings()
