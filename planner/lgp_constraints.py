@@ -70,8 +70,8 @@ def signed_distance(vertices: int) -> ca.Function:
         t = ca.fmin(1, ca.fmax(0, ca.dot(offset, edge) / safe))
         inside = ca.fmax(inside, ca.if_else(degenerate, -FAR, height))
         outside = ca.fmin(outside, ca.sumsqr(offset - t * edge))
-    # With one or two vertices there is no inside: the largest height is -FAR or at least 0.
-    is_inside = ca.logic_and(inside < 0, inside > -FAR)
+    # With one or two vertices there is no inside: the largest height is -FAR, or at least 0 but for rounding.
+    is_inside = ca.logic_and(inside < -1e-12, inside > -FAR)
     # The small summand keeps the derivative finite on the outline.
     distance = ca.if_else(is_inside, inside, ca.sqrt(outside + 1e-20))
     return ca.Function("signed_distance", [point, polygon], [distance])

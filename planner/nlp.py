@@ -142,5 +142,6 @@ class SwitchQuery:
             )
             if program.stats()["success"]:
                 x = np.array(found["x"]).ravel()
-                solutions.append((x[:2], x[2:]))
+                # IPOPT relaxes bounds by 1e-8, which is more than the numeric slack of a goal.
+                solutions.append((x[:2], np.clip(x[2:], self.lower, self.upper)))
         return solutions
