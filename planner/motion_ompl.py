@@ -92,8 +92,10 @@ def rrt_connect(
 
     def spent() -> bool:
         nonlocal iterations
+        if iterations == max_iterations or should_stop():
+            return True
         iterations += 1
-        return iterations > max_iterations or should_stop()
+        return False
 
     planner.solve(ob.PlannerTerminationCondition(spent))
     if not problem.hasExactSolution():
