@@ -17,7 +17,7 @@ from planner.problem import Configuration
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """An axis-aligned rectangle of object positions; a point has equal corners.
+    """An axis-aligned rectangle of object positions.
 
     Attributes:
         lower: (2,) [m], world.
@@ -28,21 +28,27 @@ class Region:
     upper: FloatArray
 
     @classmethod
-    def point(cls, position: FloatArray) -> "Region":
-        """The region of one position."""
-        return cls(position, position)
+    def around(cls, centre: FloatArray, size: float) -> "Region":
+        """The square with sides of `size` [m], 0 for a single point."""
+        return cls(centre - size / 2, centre + size / 2)
 
     @classmethod
     def of_goal(cls, goal: Goal) -> "Region":
         """Where the goal-object's centre has to come to rest."""
         return cls(goal.position - goal.size / 2, goal.position + goal.size / 2)
 
+    @property
+    def centre(self) -> FloatArray:
+        """The centre (2,) [m]."""
+        return (self.lower + self.upper) / 2
+
+    def contains(self, positions: FloatArray) -> BoolArray:
+        """For each of `positions` (n, 2) whether it lies in the region."""
+        return np.asarray(((positions >= self.lower) & (positions <= self.upper)).all(axis=1))
+
     def sample(self, n: int, rng: np.random.Generator) -> FloatArray:
-        """Positions (k, 2): the only one, or the centre and `n` - 1 uniform ones."""
-        centre = (self.lower + self.upper) / 2
-        if np.array_equal(self.lower, self.upper):
-            return centre[None]
-        return np.vstack([centre, rng.uniform(self.lower, self.upper, (n - 1, 2))])
+        """Positions (n, 2): the centre and `n` - 1 uniform ones."""
+        return np.vstack([self.centre, rng.uniform(self.lower, self.upper, (n - 1, 2))])
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +85,8 @@ class PickPlaceSolver(Protocol):
     def reachable(self, index: int) -> bool:
         """Whether the agent can get to a position in which it touches object `index`."""
 
-    def placeable(self, index: int, positions: FloatArray) -> BoolArray:
-        """For each of `positions` (n, 2) whether object `index` may be brought there; necessary, not sufficient."""
+    def placeable(self, index: int, subgoals: FloatArray) -> BoolArray:
+        """For each of `subgoals` (n, 2) whether object `index` may be brought near it; necessary, not sufficient."""
 
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
         """Brings object `index` into `region`; None if no way was found."""

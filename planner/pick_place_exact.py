@@ -39,6 +39,13 @@ class _Grasp:
             possible[possible] = self._tree.reaches(ends[possible])
         return possible
 
+    def nearby(self, positions: FloatArray) -> FloatArray:
+        """For each of `positions` (n, 2) a position close to it that the object can be carried to in this grasp.
+
+        In a corridor as wide as the agent no random position is free; the tree's edges run along its middle.
+        """
+        return self._tree.nearest_points(positions + self.offset) - self.offset
+
     def carry_to(self, position: FloatArray) -> FloatArray | None:
         """The shortest path (n, 2) of the agent that brings the object to `position` (2,)."""
         return self._tree.path_to(position + self.offset)
@@ -71,18 +78,23 @@ class ExactPickPlace:
         self._counters["reachable" if reachable else "unreachable"] += 1
         return reachable
 
-    def placeable(self, index: int, positions: FloatArray) -> BoolArray:
-        """For each of `positions` (n, 2) whether one of the sampled grasps leads object `index` there."""
-        found = np.zeros(len(positions), dtype=bool)
+    def placeable(self, index: int, subgoals: FloatArray) -> BoolArray:
+        """For each of `subgoals` (n, 2) whether one of the sampled grasps leads object `index` near it."""
+        reach = self._settings.subgoal_size / 2
+        found = np.zeros(len(subgoals), dtype=bool)
         for grasp in self._reachable_grasps(index):
-            found[~found] = grasp.leads_to(positions[~found])
+            missing = subgoals[~found]
+            is_near = (np.abs(grasp.nearby(missing) - missing) <= reach).all(axis=1)
+            found[~found] = is_near | grasp.leads_to(missing)
         return found
 
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
         """Tries the sampled grasps in turn; None if none of them leads into `region`."""
         self._counters["subproblems_tried"] += 1
-        positions = region.sample(self._settings.placement_samples, self._rng)
+        samples = region.sample(self._settings.placement_samples, self._rng)
         for grasp in self._reachable_grasps(index):
+            near = grasp.nearby(region.centre[None])
+            positions = np.vstack([samples, near[region.contains(near)]])
             for position in positions[grasp.leads_to(positions)]:
                 approach, carry = self._from_agent.path_to(grasp.start), grasp.carry_to(position)
                 if approach is not None and carry is not None:

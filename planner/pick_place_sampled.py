@@ -45,10 +45,10 @@ class SampledPickPlace:
         self._counters["reachable" if reachable else "unreachable"] += 1
         return reachable
 
-    def placeable(self, index: int, positions: FloatArray) -> BoolArray:
-        """All of `positions` (n, 2): whether a carry leads there is left to `pick_place`."""
+    def placeable(self, index: int, subgoals: FloatArray) -> BoolArray:
+        """All of `subgoals` (n, 2): whether a carry leads there is left to `pick_place`."""
         del index
-        return np.ones(len(positions), dtype=bool)
+        return np.ones(len(subgoals), dtype=bool)
 
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
         """Optimises switch configurations from several starts and seeks the motions between the first ones."""

@@ -52,7 +52,13 @@ def solve(
 
 
 class Search:
-    """One run of Algorithm 1; afterwards `nodes` holds the search tree."""
+    """One run of Algorithm 1.
+
+    Attributes:
+        nodes: Afterwards the search tree.
+        solution: Afterwards the configuration with the goal-object at the goal, reached from one of `nodes`; None if
+            the search did not find it.
+    """
 
     def __init__(
         self,
@@ -66,6 +72,7 @@ class Search:
         self.settings = settings
         self.rng = rng
         self.nodes: list[Node] = []
+        self.solution: Node | None = None
         self.counters: Counter[str] = Counter()
         self._frontier = Frontier(settings)
         self._rejection = Rejection(settings)
@@ -78,18 +85,20 @@ class Search:
     def run(self) -> PlanResult:
         """Expands configurations until one solves the problem, none is left or the budget is spent."""
         problem = self.problem
-        if problem.at_goal(problem.initial):
-            return self._result(Status.SOLVED)
         self._add(problem.initial)
         while self._frontier:
-            if self._out_of_budget():
+            if self._out_of_budget() or self.counters["expansions"] >= self.settings.max_expansions:
                 return self._result(Status.TIMEOUT)
             node = self._frontier.select_node()
+            if problem.at_goal(node.configuration):
+                self.solution = node
+                return self._result(Status.SOLVED, node.steps())
             self.counters["expansions"] += 1
             subproblems = self._solver_for(node.configuration)
             final = subproblems.pick_place(problem.goal_index, Region.of_goal(problem.scene.goal))
             if final is not None:
-                return self._result(Status.SOLVED, [*node.steps(), final])
+                self.solution = Node(final.applied_to(node.configuration), node, final)
+                return self._result(Status.SOLVED, self.solution.steps())
             for index in range(problem.n_objects):
                 if not subproblems.reachable(index):
                     continue
@@ -97,7 +106,8 @@ class Search:
                     self._add(step.applied_to(node.configuration), node, step)
             self._frontier.add(node)
             self._on_progress(self._progress())
-        return self._result(Status.EXHAUSTED)
+        # Where the last expansion was cut short, something may have been left.
+        return self._result(Status.TIMEOUT if self._out_of_budget() else Status.EXHAUSTED)
 
     def _solved_subproblems(
         self, subproblems: PickPlaceSolver, configuration: Configuration, index: int
@@ -111,7 +121,7 @@ class Search:
         for subgoal in proposal.subgoals:
             if self._out_of_budget():
                 break
-            steps.append(subproblems.pick_place(index, Region.point(subgoal)))
+            steps.append(subproblems.pick_place(index, Region.around(subgoal, self.settings.subgoal_size)))
         steps.append(subproblems.regrasp(index))
         return [step for step in steps if step is not None]
 
@@ -129,11 +139,7 @@ class Search:
         return Progress(self.counters["expansions"], len(self.nodes), best, time.perf_counter() - self._started)
 
     def _out_of_budget(self) -> bool:
-        return (
-            self._should_stop()
-            or self.counters["expansions"] >= self.settings.max_expansions
-            or time.perf_counter() - self._started > self.settings.time_limit
-        )
+        return self._should_stop() or time.perf_counter() - self._started > self.settings.time_limit
 
     def _result(self, status: Status, steps: list[PickPlace] | None = None) -> PlanResult:
         steps = steps or []

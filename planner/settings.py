@@ -27,6 +27,8 @@ class Settings(MbtsSettings):
         candidates: Free positions drawn for an object before the filter.
         keep_share: Share of the candidates that passes the filter.
         subgoals_per_object: Positions drawn from those that passed; the trivial subgoal comes on top.
+        subgoal_size: Sides of the square around a subgoal in which the object may be placed [m]; the subgoals of the
+            published scene files are 0.1 m tables in the puzzles and 0.2 m tables in the generated scenes.
         grasp_starts: Starts on the contact curve for one switch-configuration problem.
         placement_samples: Placements tried in a region, its centre first.
         reach_iterations: Iterations of RRT-Connect for the question whether an object can be reached.
@@ -46,6 +48,7 @@ class Settings(MbtsSettings):
     candidates: int = 100
     keep_share: float = 0.2
     subgoals_per_object: int = 5
+    subgoal_size: float = 0.1
     grasp_starts: int = 12
     placement_samples: int = 8
     reach_iterations: int = 20_000

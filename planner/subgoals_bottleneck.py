@@ -17,7 +17,7 @@ from numba import njit
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from converter.shape import FloatArray
+from converter.shape import FloatArray, denoised
 from planner.configuration_space import ConfigurationSpace
 from planner.kernel import IntArray
 from planner.problem import Configuration, Problem
@@ -52,9 +52,9 @@ class Roadmap:
         self._cell = max(cell, float(np.sqrt(np.prod(upper - lower) / MAX_VERTICES)))
         self._space = space
         columns, rows = (np.floor((upper - lower) / self._cell + 1e-9) + 1).astype(int)
-        raster = lower + self._cell * np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), axis=-1)
-        # Rounding must not put the last row outside.
-        raster = np.minimum(raster, upper)
+        steps = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), axis=-1)
+        # Rounding errors must not put the last row outside.
+        raster = np.minimum(denoised(lower + self._cell * steps), upper)
         free = space.points_free(raster.reshape(-1, 2)).reshape(columns, rows)
         number = np.full(free.shape, -1)
         number[free] = np.arange(np.count_nonzero(free))

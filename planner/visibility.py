@@ -116,5 +116,17 @@ class ShortestPathTree:
             turn = int(self._previous[turn])
         return np.array(path[::-1])
 
+    def nearest_points(self, positions: FloatArray) -> FloatArray:
+        """For each of `positions` (n, 2) the nearest point (n, 2) on the edges of the tree, all of which are free."""
+        reached = np.flatnonzero(np.isfinite(self._distance))
+        ends = self._points[reached]
+        starts = self._points[np.where(self._previous[reached] < 0, reached, self._previous[reached])]
+        edges = ends - starts
+        squared = np.maximum((edges**2).sum(axis=1), 1e-18)
+        along = ((positions[:, None] - starts) * edges).sum(axis=2) / squared
+        on_edges = starts + np.clip(along, 0.0, 1.0)[..., None] * edges
+        nearest = ((on_edges - positions[:, None]) ** 2).sum(axis=2).argmin(axis=1)
+        return np.asarray(on_edges[np.arange(len(positions)), nearest])
+
     def _last_turns(self, goals: FloatArray) -> IntArray:
         return np.asarray(_last_turns(goals, self._points, self._distance, *self.space.obstacles.arrays))
