@@ -10,9 +10,11 @@ queued for the next bound; an infeasible node takes its subtree out of all queue
 a solution.
 
 A bound is feasible if the scaled violations of its constraints sum up to less than a threshold, so a solution may
-penetrate obstacles by centimetres, and between the configurations of its path collisions are not looked at. Whether it
-solves the scene is for `planner.verify` to say. There is one optimisation a node and bound, and none starts anew: where
-the way from the start to an object leads around a wall, the path bound fails.
+penetrate obstacles by centimetres; and collisions are looked at in the configurations of a path only, so between two of
+them it may cut a corner or jump through a wall. Whether it solves the scene is for `planner.verify` to say. There is
+one optimisation a node and bound, and none starts anew: what lies behind a wall is often not found.
+
+With method `MBTS-rrt` RRT-Connect decides the path bound instead of the optimiser (`planner.mbts_rrt`), exactly.
 """
 
 import time
