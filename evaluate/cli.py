@@ -249,6 +249,74 @@ def render(
     _exit(run(inputs, out, format_, scene, as_json=json))
 
 
+@app.command(short_help="Write down where a person would put the objects.")
+def demonstrate(
+    scene: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (.yaml, .g).")],
+    *,
+    out: Annotated[Path, typer.Option(metavar="FILE", help="Demonstration file (.yaml).")],
+    point: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="OBJECT:X,Y", help="Where an object is put next [m]; repeat in order.", show_default=False
+        ),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Write a demonstration for method Hum: positions of objects, in order, from --point or from lines on stdin.
+
+    Method Hum+R takes those of data/human, called after their scenes.
+
+    Example:  manipuzzle demonstrate data/puzzles/wall.yaml --point obj:-1.75,-1.0 --out out/human/wall.yaml
+    """
+    from evaluate.commands.demonstrate import run
+
+    _exit(run(scene, out, point or [], as_json=json))
+
+
+@app.command(short_help="Draw the subgoals that a method proposes.")
+def subgoals(
+    scene: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (.yaml, .g).")],
+    *,
+    out: Out,
+    object_: Annotated[
+        str | None, typer.Option("--object", metavar="NAME", help="By default the goal-object.", show_default=False)
+    ] = None,
+    method: Annotated[str, typer.Option(metavar="NAME", help="A method of the forward search.")] = "Rnd+FPR",
+    seed: Seed = 0,
+    settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",
+    json: Json = False,
+) -> None:
+    """Draw the subgoals that a method proposes for an object at the start, before and after the filter.
+
+    Example:  manipuzzle subgoals data/puzzles/wall.yaml --method Btl+FPR --out out/pictures
+    """
+    from evaluate.commands.subgoals import run
+    from planner import settings_for
+
+    _exit(run(scene, out, settings_for(settings, method=method), seed, object_, as_json=json))
+
+
+@app.command(short_help="Draw the search tree of a method.")
+def tree(
+    scene: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (.yaml, .g).")],
+    *,
+    out: Out,
+    method: Annotated[str, typer.Option(metavar="NAME", help="A method of the forward search.")] = "Rnd+FPR",
+    seed: Seed = 0,
+    time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9)] = 60.0,
+    settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",
+    json: Json = False,
+) -> None:
+    """Plan as `solve` does and draw the search tree. Exit status 1 if the scene is not solved.
+
+    Example:  manipuzzle tree data/puzzles/wall.yaml --out out/pictures
+    """
+    from evaluate.commands.tree import run
+    from planner import settings_for
+
+    _exit(run(scene, out, settings_for(settings, method=method, time_limit=time_limit), seed, as_json=json))
+
+
 @app.command(short_help="Solve many scenes with many methods and seeds.")
 def study(
     spec: Annotated[Path, typer.Argument(metavar="SPEC.yaml", help="Scenes, methods, seeds and limits.")],

@@ -1,0 +1,111 @@
+"""Pictures of subgoals before and after the filter, side by side, coloured by score (as Fig. 3 of Levit et al.)."""
+
+import numpy as np
+import numpy.typing as npt
+
+from converter.drawing import Drawing, Item, Label, Shape, disc
+from converter.raster import Image, paint
+from converter.render_scene import scene_drawing
+from converter.scene import Scene
+from converter.shape import FloatArray
+from converter.theme import PAPER, Color, Theme, mixed
+
+LOW: Color = (1.0, 0.93, 0.62)
+HIGH: Color = (0.49, 0.05, 0.47)
+"""Colours of the lowest and the highest score; they differ in brightness, so they are told apart in grey too."""
+
+DOT_RADIUS = 5.0
+DRAWN_RADIUS = 8.0
+"""Radii of the dots of positions, and of the rings around those that were drawn, in units of the picture."""
+
+MARGIN = 34.0
+"""Height of the lines above and below the room, in units of the picture."""
+
+
+def draw_subgoals(
+    scene: Scene,
+    candidates: FloatArray,
+    scores: FloatArray,
+    passed: npt.NDArray[np.int64],
+    drawn: npt.NDArray[np.int64],
+    *,
+    width_px: int = 1200,
+    theme: Theme = PAPER,
+) -> Image:
+    """All candidates on the left; on the right those that passed the filter, with rings around the ones drawn.
+
+    Args:
+        scene: The scene at its start.
+        candidates: (k, 2) [m], world.
+        scores: (k,) of the candidates.
+        passed: Indices of the candidates that passed the filter.
+        drawn: Indices of the candidates that were drawn.
+        width_px: Width of the image.
+        theme: Colours and line widths.
+
+    Raises:
+        InputError: the image would be too large.
+    """
+    everything = np.arange(len(candidates))
+    panels = [
+        (f"before the filter: {len(candidates)}", everything, everything[:0]),
+        (f"after the filter: {len(passed)}, drawn: {len(drawn)}", passed, drawn),
+    ]
+    return np.hstack(
+        [
+            paint(_panel(scene, title, candidates, scores, shown, ringed, theme), width_px // 2)
+            for title, shown, ringed in panels
+        ]
+    )
+
+
+def score_color(score: float, scores: FloatArray) -> Color:
+    """The colour of a score among all `scores` (n,)."""
+    low, high = float(scores.min()), float(scores.max())
+    return mixed(LOW, HIGH, (score - low) / (high - low) if high > low else 1.0)
+
+
+def _panel(
+    scene: Scene,
+    title: str,
+    candidates: FloatArray,
+    scores: FloatArray,
+    shown: npt.NDArray[np.int64],
+    ringed: npt.NDArray[np.int64],
+    theme: Theme,
+) -> Drawing:
+    room = scene_drawing(scene, theme=theme)
+    unit = room.unit
+    margin = np.array([0.0, MARGIN * unit])
+    middle = (room.lower[0] + room.upper[0]) / 2
+    heading = Label(title, np.array([middle, room.upper[1] + margin[1] / 2]), theme.text_height * unit, theme.outline)
+    rings = [
+        Shape((disc(candidates[i], DRAWN_RADIUS * unit),), theme.badge, outline=theme.outline, outline_width=unit)
+        for i in ringed
+    ]
+    # The best ones on top, where dots overlap.
+    dots = [
+        _dot(candidates[i], scores[i], scores, unit, theme) for i in shown[np.argsort(scores[shown], kind="stable")]
+    ]
+    legend = _legend(scores, np.array([middle, room.lower[1] - margin[1] / 2]), unit, theme)
+    return Drawing(
+        room.lower - margin, room.upper + margin, room.background, (*room.items, heading, *rings, *dots, *legend)
+    )
+
+
+def _dot(position: FloatArray, score: float, scores: FloatArray, unit: float, theme: Theme) -> Shape:
+    color = score_color(float(score), scores)
+    return Shape((disc(position, DOT_RADIUS * unit),), color, outline=theme.outline, outline_width=0.7 * unit)
+
+
+def _legend(scores: FloatArray, center: FloatArray, unit: float, theme: Theme) -> list[Item]:
+    """A dot and a number for each score that occurs."""
+    values = np.unique(scores)
+    step = 55.0 * unit
+    left = center[0] - step * (len(values) - 1) / 2
+    items: list[Item] = []
+    for i, value in enumerate(values):
+        dot, number = np.array([[-14.0, 0.0], [6.0, 0.0]]) * unit + [left + i * step, center[1]]
+        items.append(_dot(dot, value, scores, unit, theme))
+        items.append(Label(f"{value:g}", number, theme.text_height * unit, theme.outline))
+    return items
