@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from pydantic import Field
 
 from converter.formats import scene_yaml
 from converter.formats.body_document import Number
@@ -178,14 +179,14 @@ class _Plan(Document):
     seed: int
     status: Status
     time_s: float
-    settings: dict[str, Any] = {}
+    settings: dict[str, Any] = Field(default_factory=dict)
     preset: str | None = None
     tolerance: float
     certificate: str | None = None
-    counters: dict[str, float] = {}
+    counters: dict[str, float] = Field(default_factory=dict)
     cost: dict[str, float] | None = None
-    subgoals: list[_Subgoal] = []
-    segments: list[_Segment] = []
+    subgoals: list[_Subgoal] = Field(default_factory=list)
+    segments: list[_Segment] = Field(default_factory=list)
     scene_data: dict[str, Any] | None = None
 
 

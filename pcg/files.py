@@ -10,7 +10,7 @@ from pcg.errors import InputError
 
 
 def read_text(path: Path) -> str:
-    """The text of a UTF-8 file; line endings become `\\n`.
+    """The text of a UTF-8 file, with line feeds as line endings.
 
     Raises:
         InputError: the file is missing, is a folder, may not be read or is not UTF-8 text.

@@ -19,6 +19,8 @@ def validated(model: type[Model], data: Any, where: str) -> Model:
     """`data` as a `model`.
 
     Args:
+        model: What the document has to be.
+        data: Plain values as a parser returns them.
         where: What `data` was read from, a file's path as a rule; it begins the message.
 
     Raises:

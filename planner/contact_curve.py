@@ -146,9 +146,9 @@ def _crossings(knot: FloatArray, following: FloatArray, border: _Border) -> Floa
         lengths = _on_line(origin, np.array([-normal[1], normal[0]]), border)
         length = following[0] - start
     else:
-        lengths = reach * ((_on_circle(knot[1:3], reach, border) - angle) % (2 * np.pi))
+        lengths = reach * np.mod(_on_circle(knot[1:3], reach, border) - angle, 2 * np.pi)
         length = reach * (following[3] - angle)
-    return start + lengths[(lengths > 0) & (lengths < length)]
+    return np.asarray(start + lengths[(lengths > 0) & (lengths < length)])
 
 
 def _on_line(origin: FloatArray, direction: FloatArray, border: _Border) -> FloatArray:
