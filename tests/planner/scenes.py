@@ -1,12 +1,18 @@
-"""Small scenes built in code."""
+"""Small scenes built in code, and what the independent verifier says about steps in them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from converter.plan import Status
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import FloatArray, Part, rotation
+from planner.assemble import segments_of, subgoals_of
+from planner.pick_place import PickPlace
+from planner.result import PlanResult
+from planner.settings import Settings
+from planner.verify import ViolationKind, verify
 
 RADIUS = 0.2
 HEIGHT = 0.2
@@ -53,3 +59,9 @@ def turned(one: Body, yaw: float) -> Body:
 def vectors(*rows: Sequence[float]) -> FloatArray:
     """Rows (n, 2) of plain numbers."""
     return np.array(rows, dtype=float)
+
+
+def violations(scene: Scene, *steps: PickPlace) -> set[ViolationKind]:
+    """What the verifier finds in the plan of these steps."""
+    result = PlanResult(Status.SOLVED, 0.0, segments_of(scene, steps), subgoals_of(scene, steps))
+    return {violation.kind for violation in verify(scene, result.to_plan(scene, Settings(), 0))}
