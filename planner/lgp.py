@@ -60,7 +60,7 @@ class Program:
 
     Attributes:
         x: Variables: agent positions [m], two rows each; in the pose followed by the free object positions.
-        p: Parameters, as `LgpScene.pack` makes them.
+        p: Parameters, as `planner.lgp_scene.pack` makes them.
         residuals: Their sum of squares is the cost.
         equalities: Scaled; 0 where satisfied.
         inequalities: Scaled; >= 0 where satisfied.

@@ -91,14 +91,13 @@ class MultiBoundTreeSearch:
         """Steps until a path bound is feasible, nothing is left to do or the budget is spent."""
         if self.problem.at_goal(self.problem.initial):
             return self._result(Status.SOLVED)
-        while self.fringe or any(self.queues.values()):
-            if self._out_of_budget():
-                return self._result(Status.TIMEOUT)
+        while (self.fringe or any(self.queues.values())) and not self._out_of_budget():
             solution = self.step()
             if solution is not None:
                 return self._solved(*solution)
             self._on_progress(self._progress())
-        return self._result(Status.EXHAUSTED)
+        # What the end of the budget cut short counts as infeasible, so empty queues alone say nothing.
+        return self._result(Status.TIMEOUT if self._out_of_budget() else Status.EXHAUSTED)
 
     def step(self) -> tuple[TreeNode, list[FloatArray]] | None:
         """Expands one node and solves at most one problem of each bound; the node and its motions if one is solved."""

@@ -1,6 +1,7 @@
 """Multi-bound tree search: its steps, pruning, limits, and what its plans are worth."""
 
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -121,6 +122,16 @@ def test_the_search_can_be_stopped():
     result = solve(TWO, replace(MBTS, max_expansions=2), np.random.default_rng(0))
     assert result.status is Status.TIMEOUT
     assert result.counters["expansions"] == 2
+
+
+def test_a_motion_cut_short_does_not_exhaust_the_search():
+    """Stopped in the middle of the last path bound, the search ran out of time, not out of skeletons."""
+    asked = count()
+    settings = replace(MBTS_RRT, mbts_max_depth=2)
+    result = solve(ACROSS, settings, np.random.default_rng(0), should_stop=lambda: next(asked) > 200)
+    assert result.counters["path_infeasible"] == 1
+    assert result.status is Status.TIMEOUT
+    assert result.certificate is None
 
 
 def test_progress_is_reported_after_each_step_without_a_solution():
