@@ -24,6 +24,7 @@ from pcg.grid import Cell
 from pcg.level import Level
 from pcg.metrics import occluded as level_occluded
 from pcg.solver import SolverStatus, goal_crate_of, solve
+from pcg.xsb import format_level
 
 FLOOR_MARGIN = 0.05
 """How far the floor and the outer walls reach beyond the border of the grid [m]."""
@@ -192,6 +193,7 @@ def _source(level: Level, choice: _Choice, settings: ConversionSettings, scene: 
         "level": level.name,
         "rows": level.shape[0],
         "columns": level.shape[1],
+        "xsb": format_level(replace(level, name="")),
         "goal_crate": list(choice.crate),
         "goal_crate_from": choice.by,
         "solvable": choice.solvable,

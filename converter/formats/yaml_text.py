@@ -67,6 +67,11 @@ _Dumper.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+.012345
 _Dumper.add_representer(
     Flow, lambda dumper, data: dumper.represent_mapping("tag:yaml.org,2002:map", data, flow_style=True)
 )
+# Text of several lines, such as a level, is written line by line.
+_Dumper.add_representer(
+    str,
+    lambda dumper, text: dumper.represent_scalar("tag:yaml.org,2002:str", text, style="|" if "\n" in text else None),
+)
 
 
 def parse(text: str, where: str) -> Any:
@@ -90,7 +95,7 @@ def parse(text: str, where: str) -> Any:
 
 
 def dump(document: dict[str, Any]) -> str:
-    """The text of plain values; lists of numbers and `Flow` mappings stay on one line."""
+    """The text of plain values; lists of numbers and `Flow` mappings stay on one line, text keeps its lines."""
     return yaml.dump(
         document, Dumper=_Dumper, default_flow_style=None, sort_keys=False, width=WIDTH, allow_unicode=True
     )

@@ -123,6 +123,13 @@ def test_occlusion_is_recorded_twice():
     assert convert(TINY).source["occluded"] == {"level": False, "scene": False}
 
 
+def test_the_level_is_recorded():
+    """As XSB text that gives the level back, so that its push solution is never lost."""
+    (level,) = parse_levels(TINY, "levels.xsb")
+    (back,) = parse_levels(convert(TINY).source["xsb"], "source")
+    np.testing.assert_array_equal(back.tiles, level.tiles)
+
+
 def test_the_settings_are_recorded():
     """Every size, with the radius that was used."""
     settings = ConversionSettings(preset="published", cell=0.5, object_size=0.3, goal_size=0.2, wall_height=0.6)

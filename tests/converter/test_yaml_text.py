@@ -93,3 +93,15 @@ def test_any_text_is_read_or_refused(text: str):
     """No text ends in another exception than an input error."""
     with contextlib.suppress(InputError):
         yaml_text.parse(text, "file")
+
+
+@given(st.text(st.sampled_from("# $\n\t:-'|\"é"), max_size=12))
+def test_text_of_several_lines_survives(text: str):
+    """Whatever stands at the ends of its lines, wherever it stands in the document."""
+    document = {"a": {"text": text, "list": [text, 1]}, "b": yaml_text.Flow({"text": text})}
+    assert yaml_text.parse(yaml_text.dump(document), "file") == document
+
+
+def test_a_level_is_written_line_by_line():
+    """People can see it in the file."""
+    assert yaml_text.dump({"xsb": "###\n# #\n"}) == "xsb: |\n  ###\n  # #\n"
