@@ -74,7 +74,8 @@ def signed_distance(vertices: int) -> ca.Function:
     is_inside = ca.logic_and(inside < -1e-12, inside > -FAR)
     # The small summand keeps the derivative finite on the outline.
     distance = ca.if_else(is_inside, inside, ca.sqrt(outside + 1e-20))
-    return ca.Function("signed_distance", [point, polygon], [distance])
+    # Polygons are parameters: nothing is differentiated by them.
+    return ca.Function("signed_distance", [point, polygon], [distance], {"is_diff_in": [True, False]})
 
 
 def clearances(points: ca.MX, block: PolygonBlock, packed: ca.MX) -> ca.MX:
