@@ -22,7 +22,7 @@ class MbtsSettings:
             0.01, so shorter skeletons go first.
         mbts_max_iterations: Iterations of one optimisation; 15 to 50 are usual.
         mbts_acceleration_weight: Factor of second differences along a path.
-        mbts_velocity_weight: Factor of first differences along a path; it keeps an agent from swinging out.
+        mbts_velocity_weight: Factor of first differences along a path, small against that of accelerations.
         mbts_homing_weight: Factor of distances from the start.
         mbts_switch_weight: Factor of distances between consecutive switches.
         mbts_touch_scale: Scale of the gap at a pick [1/m].
