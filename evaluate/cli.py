@@ -189,7 +189,8 @@ def solve(
     *,
     out: Out,
     method: Annotated[
-        str, typer.Option(metavar="NAME", help="Rnd+FPR, Rnd+FP, Rnd+FR, Rnd+R, Btl+FPR, Hum+R, MBTS or MBTS-rrt.")
+        str,
+        typer.Option(metavar="NAME", help="Rnd+FPR, Rnd+FP, Rnd+FR, Rnd+R, Btl+FPR, Hum+R, MBTS, MBTS-rrt or Push."),
     ] = "Rnd+FPR",
     seed: Seed = 0,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9, help="For each scene.")] = 60.0,

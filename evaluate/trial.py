@@ -12,6 +12,7 @@ from converter.shape import Part
 from pcg.errors import InputError
 from planner import Settings, solve
 from planner.problem import Problem
+from planner.push import SourceLevel
 from planner.subgoals_human import HumanSubgoals
 from planner.verify import Violation, verify
 
@@ -85,12 +86,15 @@ def require_plannable(scene: Scene, settings: Settings, where: str) -> None:
         where: What the scene was read from; it begins the message.
 
     Raises:
-        InputError: two bodies overlap at the start, one is out of bounds, or the method lacks its demonstration.
+        InputError: two bodies overlap at the start, one is out of bounds, or the method lacks its
+            demonstration or its level.
     """
     try:
         problem = Problem(scene)
         if settings.generator == "Hum":
             HumanSubgoals(problem, settings)
+        if settings.method == "Push":
+            SourceLevel.of(scene)
     except InputError as error:
         raise InputError(where, str(error).removeprefix(f"{scene.name}: ")) from None
 
@@ -98,8 +102,9 @@ def require_plannable(scene: Scene, settings: Settings, where: str) -> None:
 def warm_up(*every: Settings) -> None:
     """Solves a small scene with each of the settings, so that no trial's time includes loading and compiling."""
     for settings in every:
-        # Nobody demonstrates a scene like this one.
-        run_trial(_warm_up_scene(), replace(settings, method="Rnd+R") if settings.generator == "Hum" else settings, 0)
+        # Nobody demonstrates a scene like this one, and no level is its source.
+        is_informed = settings.generator in {"Hum", "Push"}
+        run_trial(_warm_up_scene(), replace(settings, method="Rnd+R") if is_informed else settings, 0)
 
 
 def _warm_up_scene() -> Scene:

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from converter.scene import Scene
-from planner import search
+from planner import push, search
 from planner.result import PlanResult, Progress
 from planner.settings import METHODS, Settings
 
@@ -40,7 +40,11 @@ def _mbts(
     return mbts.solve(scene, settings, rng, should_stop=should_stop, on_progress=on_progress)
 
 
-SOLVERS: dict[str, Solver] = {method: _mbts if method.startswith("MBTS") else search.solve for method in METHODS}
+SOLVERS: dict[str, Solver] = dict.fromkeys(METHODS, search.solve) | {
+    "MBTS": _mbts,
+    "MBTS-rrt": _mbts,
+    "Push": push.solve,
+}
 """Searches by the name of the method."""
 
 
@@ -62,6 +66,6 @@ def solve(
         on_progress: Told after every expansion that did not end the search.
 
     Raises:
-        InputError: bodies of the scene overlap at the start.
+        InputError: bodies of the scene overlap at the start, or the scene lacks what the method needs.
     """
     return SOLVERS[settings.method](scene, settings, rng, should_stop=should_stop, on_progress=on_progress)

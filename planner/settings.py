@@ -6,11 +6,12 @@ from typing import Any, Literal
 from pcg.errors import InputError
 from planner.mbts_settings import MbtsSettings
 
-METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R", "Btl+FPR", "Hum+R", "MBTS", "MBTS-rrt")
+METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R", "Btl+FPR", "Hum+R", "MBTS", "MBTS-rrt", "Push")
 """Names of the methods.
 
 Of the forward search: subgoal generator (random, bottleneck, human), then F filter, P prioritised selection, R
-rejection. Of multi-bound tree search: trajectories by optimisation as published, or by RRT-Connect.
+rejection. Of multi-bound tree search: trajectories by optimisation as published, or by RRT-Connect. Push lifts the
+solution of the level that the scene was converted from.
 """
 
 
