@@ -259,3 +259,32 @@ def test_paths_are_the_same_both_ways(seed: int):
     if connected:
         there, back = path_between(start, goal, walls), path_between(goal, start, walls)
         assert length(there) == pytest.approx(length(back), abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_nearest_points_are_reached(seed: int):
+    """A point of the tree near a place is free and reached, and no corner that is reached is nearer."""
+    rng = np.random.default_rng(seed)
+    space = disc_space(random_walls(rng))
+    start, _ = free_pair(space, rng)
+    tree = ShortestPathTree(space, start)
+    places = rng.uniform(*BOUNDS, (50, 2))
+    nearest = tree.nearest_points(places)
+    assert tree.reaches(nearest).all()
+    corners = np.vstack([start, space.obstacles.corners])
+    reached = corners[tree.reaches(corners)]
+    to_corners = np.hypot(*(places[:, np.newaxis] - reached).T).T.min(axis=1)
+    assert (np.hypot(*(nearest - places).T) <= to_corners + 1e-12).all()
+
+
+def test_nearest_points_run_along_a_passage_without_clearance():
+    """Near any place in a passage as wide as the disc there is a point of its middle."""
+    tree = ShortestPathTree(disc_space(corridor(WIDTH, 0.0)), CORRIDOR_ENDS[0])
+    nearest = tree.nearest_points(vectors([0.3, 0.05], [-0.7, -0.01]))
+    np.testing.assert_allclose(nearest, vectors([0.3, 0], [-0.7, 0]), atol=1e-8)
+
+
+def test_nearest_point_of_a_start_that_leads_nowhere():
+    """In an empty space the tree is its start."""
+    tree = ShortestPathTree(disc_space([]), np.array([1.0, 1.0]))
+    np.testing.assert_array_equal(tree.nearest_points(vectors([0, 0], [2, 2])), vectors([1, 1], [1, 1]))
