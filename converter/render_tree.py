@@ -24,7 +24,7 @@ MAX_EXPANDED = 40
 TILE_PX = 150
 """Width of a small picture, if the tree is not too wide for it."""
 
-WIDTH_PX = (450, 6000)
+WIDTH_PX = (450, 4000)
 """Least and greatest width of an image."""
 
 GAP, ROW, DOT = 0.2, 1.5, 0.09
@@ -152,10 +152,8 @@ def _drawing(
     """Lines, frames and dots; the small pictures are pasted into the frames."""
     lines: list[Item] = []
     for i in sorted(range(1, len(shown)), key=lambda i: i in solution):
-        top = 0.0 if shown[i].mark is Mark.OPEN else 0.5
-        ends = np.array([places[parents[i]] - [0.0, 0.5], places[i] + [0.0, top]])
-        on_path = i in solution
-        lines.append(Line(ends, FRAME if on_path else FRAME / 3, _COLORS[Mark.SOLVED] if on_path else LINE))
+        width, color = (FRAME, _COLORS[Mark.SOLVED]) if i in solution else (FRAME / 3, LINE)
+        lines += [Line(piece, width, color) for piece in _connection(places[parents[i]], places[i])]
     marks: list[Item] = [
         Shape((disc(place, DOT),), LINE)
         if node.mark is Mark.OPEN
@@ -168,6 +166,13 @@ def _drawing(
     spare = max(0.0, 3.0 - (right - left)) / 2
     lower, upper = np.array([left - spare, places[:, 1].min() - 0.7]), np.array([right + spare, 1.05])
     return Drawing(lower, upper, theme.page, (*lines, *marks, label))
+
+
+def _connection(parent: FloatArray, child: FloatArray) -> list[FloatArray]:
+    """Straight pieces (2, 2) down from the parent, across between the rows, and down to the child."""
+    middle = parent[1] - ROW / 2
+    corners = np.array([parent, [parent[0], middle], [child[0], middle], child])
+    return [corners[i : i + 2] for i in range(3)]
 
 
 def _paste(image: Image, drawing: Drawing, scene: Scene, node: TreeNode, place: FloatArray, theme: Theme) -> None:
