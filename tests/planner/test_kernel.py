@@ -18,7 +18,7 @@ exactly = settings(max_examples=300, deadline=None)
 
 def hits(a: FloatArray, b: FloatArray, polygon: FloatArray, rho: float) -> bool:
     """The kernel's answer for two points."""
-    return bool(segment_hits_polygon(a[0], a[1], b[0], b[1], np.ascontiguousarray(polygon), rho))
+    return bool(segment_hits_polygon(a[0], a[1], b[0], b[1], np.ascontiguousarray(polygon), 0, len(polygon), rho))
 
 
 @exactly
