@@ -83,12 +83,14 @@ def write_demonstration(path: Path, demonstration: Demonstration) -> None:
 
 
 def require_suitable(problem: Problem, demonstration: Demonstration, where: str) -> None:
-    """Refuses a demonstration that moves unknown objects, or moves one into a wall or out of bounds.
+    """Refuses a demonstration of another scene, of unknown objects, or of places in walls or out of bounds.
 
     Raises:
-        InputError: naming the subgoal and the reason; `where` begins the message.
+        InputError: naming the field and the reason; `where` begins the message.
     """
     names = problem.scene.object_names
+    if demonstration.scene != problem.scene.name:
+        raise InputError(where, f"scene: found {demonstration.scene!r}, the scene is {problem.scene.name!r}")
     for i, subgoal in enumerate(demonstration.subgoals):
         field, place = f"subgoals[{i}]", subgoal.position.tolist()
         if subgoal.object not in names:

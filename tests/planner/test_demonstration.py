@@ -106,6 +106,12 @@ def test_a_demonstration_has_to_suit_the_scene(place: tuple[str, float, float], 
         require_suitable(PROBLEM, demonstration(("obj", 1.0, -1.0), place), "here")
 
 
+def test_a_demonstration_belongs_to_one_scene():
+    """One that was recorded for another scene is refused, even if its places would do."""
+    with pytest.raises(InputError, match="^here: scene: found 'hall', the scene is 'room'$"):
+        require_suitable(PROBLEM, demonstration(("obj", 1.0, -1.0), scene="hall"), "here")
+
+
 @pytest.mark.parametrize("path", sorted((DATA / "puzzles").glob("*.yaml")), ids=lambda path: path.stem)
 def test_every_puzzle_has_a_demonstration_that_suits_it(path: Path):
     """The nine puzzles can be solved by method Hum without recording anything."""
