@@ -108,7 +108,7 @@ def test_a_demonstration_has_to_suit_the_scene(place: tuple[str, float, float], 
 
 def test_a_demonstration_belongs_to_one_scene():
     """One that was recorded for another scene is refused, even if its places would do."""
-    with pytest.raises(InputError, match="^here: scene: found 'hall', the scene is 'room'$"):
+    with pytest.raises(InputError, match=r"^here: scene: found 'hall', the scene is 'room'$"):
         require_suitable(PROBLEM, demonstration(("obj", 1.0, -1.0), scene="hall"), "here")
 
 
