@@ -7,8 +7,8 @@ in closed form, so no motion is ever checked by sampling points along it:
 
 - rho <= 0: the segment a + t (b - a) is clipped by the half-planes n_i . x < c_i + rho (Cyrus and Beck 1978); it hits
   if an open interval of t is left.
-- rho > 0: it hits if a vertex of one comes closer than rho to an edge of the other, if it crosses an edge of the core,
-  or if it starts in the core. No interior is needed to cross an edge, so cores as thin as rounding errors stop it too.
+- rho > 0: it hits if a vertex of one comes closer than rho to an edge of the other, or if it crosses the core's interior
+  or one of its edges: a core as thin as rounding errors has no interior left.
 
 Layout of an obstacle set of K polygons with M vertices in all, float64, world frame, [m]:
 `vertices (M, 2)` counter-clockwise; `first (K + 1,)` int64, polygon k owns rows first[k] to first[k + 1] - 1;
@@ -106,7 +106,7 @@ def segment_hits_polygon(
             return True
         if _segments_cross(ax, ay, bx, by, px, py, qx, qy):
             return True
-    return _crosses_core(ax, ay, ax, ay, vertices, begin, end, 0.0)
+    return _crosses_core(ax, ay, bx, by, vertices, begin, end, 0.0)
 
 
 @njit(cache=True)

@@ -167,3 +167,10 @@ def test_all_vertices_in_one_place_are_a_point():
     assert not hits(np.array([1.0, 0.0]), np.array([1.0, 0.0]), core, 0.5)
     assert hits(np.array([0.4, 0.0]), np.array([0.4, 0.0]), core, 0.5)
     assert not hits(np.array([-1.0, 0.0]), np.array([1.0, 0.0]), core, 0.0)
+
+
+@pytest.mark.parametrize("rho", [0.0, 1e-20, 1e-12, 1e-9])
+def test_tiny_radii_make_no_hole_at_a_vertex(rho: float):
+    """A segment that enters through a vertex is stopped, also if rounding puts that on neither side of the line."""
+    triangle = np.array([[0.25, 0.5], [-0.125, 0.9330127], [-0.125, 0.0669873]])
+    assert hits(np.array([0.4995, 0.5]), np.array([0.0, 0.5]), triangle, rho)
