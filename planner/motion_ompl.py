@@ -1,4 +1,4 @@
-"""Motion planning by sampling: OMPL's RRT-Connect (Kuffner and LaValle 2000) on the exact collision tests.
+"""Motion planning by the planners of OMPL, above all RRT-Connect (Kuffner and LaValle 2000), on the exact tests.
 
 Both the state and the motion validity are decided by `planner.kernel`, so no motion is checked by points along it. The
 number of iterations bounds the work and the seed comes from the caller, so a query's answer does not depend on what
@@ -6,7 +6,6 @@ the process did before.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from ompl import base as ob
@@ -16,24 +15,12 @@ from ompl import util as ou
 from converter.shape import FloatArray
 from planner import kernel
 from planner.configuration_space import ConfigurationSpace
+from planner.motion import OMPL_PLANNERS, MotionResult
 
 # Seeding the generator again before each query is what makes queries repeatable; OMPL logs an error each time.
 ou.setLogLevel(ou.LogLevel.LOG_NONE)
 
 _LARGEST_SEED = 2**31 - 1
-
-
-@dataclass(frozen=True, eq=False)
-class MotionResult:
-    """Outcome of a query.
-
-    Attributes:
-        path: (n, 2) [m] from the start to one of the goals, or None.
-        iterations: Iterations spent.
-    """
-
-    path: FloatArray | None
-    iterations: int
 
 
 class _StateValidity(ob.StateValidityChecker):  # type: ignore[misc]  # compiled base class without type information
@@ -56,52 +43,62 @@ class _MotionValidity(ob.MotionValidator):  # type: ignore[misc]  # compiled bas
         return bool(kernel.segment_free(a[0], a[1], b[0], b[1], *self._obstacles))
 
 
-def rrt_connect(
-    space: ConfigurationSpace,
-    start: FloatArray,
-    goals: FloatArray,
-    max_iterations: int,
-    rng: np.random.Generator,
-    should_stop: Callable[[], bool] = lambda: False,
-) -> MotionResult:
-    """A free path from `start` (2,) to the first of `goals` (k, 2) [m] that the trees meet.
+class OmplPlanner:
+    """A planner of OMPL as a back end; see `planner.motion.MotionPlanner`.
+
+    Planners that look for the shortest path spend all their iterations.
 
     Args:
-        space: Where the point may be.
-        start: (2,) [m].
-        goals: (k, 2) [m]; those that are not free are left out.
-        max_iterations: Iterations after which the query fails.
-        rng: Gives the seed of OMPL's generator.
-        should_stop: Asked in every iteration.
+        name: One of `planner.motion.OMPL_PLANNERS`.
     """
-    goals = goals[space.points_free(goals)]
-    if len(goals) == 0 or not space.point_free(start):
-        return MotionResult(None, 0)
-    ou.RNG.setSeed(int(rng.integers(1, _LARGEST_SEED)))
-    si = _space_information(space)
-    problem = ob.ProblemDefinition(si)
-    problem.addStartState(_state(si, start))
-    targets = ob.GoalStates(si)
-    for goal in goals:
-        targets.addState(_state(si, goal))
-    problem.setGoal(targets)
-    planner = og.RRTConnect(si)
-    planner.setProblemDefinition(problem)
-    planner.setup()
-    iterations = 0
 
-    def spent() -> bool:
-        nonlocal iterations
-        if iterations == max_iterations or should_stop():
-            return True
-        iterations += 1
-        return False
+    def __init__(self, name: str) -> None:
+        if name not in OMPL_PLANNERS:
+            raise ValueError(f"no planner {name!r}; there are {', '.join(OMPL_PLANNERS)}")
+        self._planner = getattr(og, name)
 
-    planner.solve(ob.PlannerTerminationCondition(spent))
-    if not problem.hasExactSolution():
-        return MotionResult(None, iterations)
-    states = problem.getSolutionPath().getStates()
-    return MotionResult(np.array([[state[0], state[1]] for state in states]), iterations)
+    def __call__(
+        self,
+        space: ConfigurationSpace,
+        start: FloatArray,
+        goals: FloatArray,
+        max_iterations: int,
+        rng: np.random.Generator,
+        should_stop: Callable[[], bool] = lambda: False,
+    ) -> MotionResult:
+        """A free path to one of `goals`; `rng` gives the seed of OMPL's generator, every iteration asks to stop."""
+        goals = goals[space.points_free(goals)]
+        if len(goals) == 0 or not space.point_free(start):
+            return MotionResult(None, 0)
+        ou.RNG.setSeed(int(rng.integers(1, _LARGEST_SEED)))
+        si = _space_information(space)
+        problem = ob.ProblemDefinition(si)
+        problem.addStartState(_state(si, start))
+        targets = ob.GoalStates(si)
+        for goal in goals:
+            targets.addState(_state(si, goal))
+        problem.setGoal(targets)
+        planner = self._planner(si)
+        planner.setProblemDefinition(problem)
+        planner.setup()
+        iterations = 0
+
+        def spent() -> bool:
+            nonlocal iterations
+            if iterations == max_iterations or should_stop():
+                return True
+            iterations += 1
+            return False
+
+        planner.solve(ob.PlannerTerminationCondition(spent))
+        if not problem.hasExactSolution():
+            return MotionResult(None, iterations)
+        states = problem.getSolutionPath().getStates()
+        return MotionResult(np.array([[state[0], state[1]] for state in states]), iterations)
+
+
+rrt_connect = OmplPlanner("RRTConnect")
+"""The planner that [L] uses."""
 
 
 def _space_information(space: ConfigurationSpace) -> ob.SpaceInformation:

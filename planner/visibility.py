@@ -9,12 +9,15 @@ One tree answers every query from its start, which is what a search asks: where 
 object, get to from here?
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numba import njit
 
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace
 from planner.kernel import BoolArray, IntArray, segment_free
+from planner.motion import MotionResult
 
 
 @njit(cache=True)
@@ -130,3 +133,24 @@ class ShortestPathTree:
 
     def _last_turns(self, goals: FloatArray) -> IntArray:
         return np.asarray(_last_turns(goals, self._points, self._distance, *self.space.obstacles.arrays))
+
+
+def shortest_path(
+    space: ConfigurationSpace,
+    start: FloatArray,
+    goals: FloatArray,
+    max_iterations: int,
+    rng: np.random.Generator,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> MotionResult:
+    """The shortest free path to one of `goals`; see `planner.motion.MotionPlanner`. Nothing is drawn or counted."""
+    del max_iterations, rng, should_stop
+    if not space.point_free(start):
+        return MotionResult(None, 0)
+    tree = ShortestPathTree(space, start)
+    paths = [path for path in map(tree.path_to, goals) if path is not None]
+    return MotionResult(min(paths, key=_length, default=None), 0)
+
+
+def _length(path: FloatArray) -> float:
+    return float(np.hypot(*np.diff(path, axis=0).T).sum())

@@ -1,0 +1,128 @@
+"""The back ends of motion queries: one interface, and they never contradict each other."""
+
+import numpy as np
+import pytest
+
+from converter.shape import FloatArray
+from planner.configuration_space import ConfigurationSpace, ObstacleSet
+from planner.motion import MOTION_PLANNERS, OMPL_PLANNERS, motion_planner
+from planner.visibility import ShortestPathTree
+from tests.planner.plain_geometry import length
+from tests.planner.scenes import vectors
+
+BOUNDS = vectors([-2, -2], [2, 2])
+CORNERS = vectors([-1, -1], [1, -1], [1, 1], [-1, 1])
+RADIUS = 0.2
+CLEARANCE = 5e-3
+BARRIER = vectors([-0.1, -2], [0.1, -2], [0.1, 1.5], [-0.1, 1.5])
+LEFT, RIGHT = vectors([-1, -1], [1, -1])
+
+
+def space_with(*cores: FloatArray, rho: float = RADIUS) -> ConfigurationSpace:
+    """A square of 4 m with these obstacles."""
+    return ConfigurationSpace(ObstacleSet.of(cores, [rho] * len(cores)), BOUNDS)
+
+
+def random_cores(rng: np.random.Generator) -> list[FloatArray]:
+    """Cubes on a grid whose gaps are as wide as the disc, and two turned boxes."""
+    cells = np.argwhere(rng.random((5, 5)) < 0.4)
+    cores = [0.8 * cell - 1.6 + 0.2 * CORNERS for cell in cells]
+    for angle in rng.uniform(0, np.pi, 2):
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        cores.append(rng.uniform(-2, 2, 2) + CORNERS * rng.uniform(0.02, 0.4, 2) @ turn)
+    return cores
+
+
+def test_every_name_has_a_back_end():
+    """The default of OMPL is RRT-Connect; unknown names are a mistake that is told which names there are."""
+    assert all(callable(motion_planner(name)) for name in MOTION_PLANNERS)
+    assert OMPL_PLANNERS[0] == "RRTConnect"
+    for name in ("", "ompl:", "ompl:PRM", "rrt:RRT"):
+        with pytest.raises(KeyError, match="there are ompl, rrt, visibility, ompl:RRTConnect"):
+            motion_planner(name)
+
+
+@pytest.mark.parametrize("name", [name for name in MOTION_PLANNERS if "KPIECE" not in name])
+def test_every_back_end_finds_a_way(name: str):
+    """Around a wall the path is free and joins the ends."""
+    space = space_with(BARRIER, rho=0.1)
+    result = motion_planner(name)(space, LEFT, RIGHT[None], 4000, np.random.default_rng(3))
+    assert result.path is not None
+    np.testing.assert_array_equal(result.path[[0, -1]], [LEFT, RIGHT])
+    assert space.path_free(result.path)
+    assert result.iterations <= 4000
+
+
+@pytest.mark.parametrize("name", MOTION_PLANNERS)
+def test_no_back_end_finds_a_way_where_there_is_none(name: str):
+    """A wall from border to border, and ends that are not free; the iterations are bounded."""
+    plan, rng = motion_planner(name), np.random.default_rng(0)
+    closed = space_with(vectors([-0.1, -2], [0.1, -2], [0.1, 2], [-0.1, 2]))
+    result = plan(closed, LEFT, RIGHT[None], 300, rng)
+    assert result.path is None
+    assert result.iterations <= 300
+    for start, goals in [(np.zeros(2), RIGHT[None]), (LEFT, np.zeros((1, 2))), (LEFT, np.empty((0, 2)))]:
+        refused = plan(closed, start, goals, 300, rng)
+        assert (refused.path, refused.iterations) == (None, 0)
+
+
+@pytest.mark.parametrize("name", MOTION_PLANNERS)
+def test_the_seed_decides(name: str):
+    """The same generator gives the same path, whatever ran before."""
+    plan, space = motion_planner(name), space_with(BARRIER, rho=0.1)
+    first, _, again = (plan(space, LEFT, RIGHT[None], 400, np.random.default_rng(seed)) for seed in (5, 6, 5))
+    assert first.iterations == again.iterations
+    assert (first.path is None) == (again.path is None)
+    if first.path is not None:
+        np.testing.assert_array_equal(first.path, again.path)
+
+
+@pytest.mark.parametrize("name", ["ompl:RRTstar", "ompl:InformedRRTstar", "ompl:AORRTC"])
+def test_optimal_planners_come_close_to_the_shortest_path(name: str):
+    """With iterations to spare their paths are a few per cent longer than the shortest."""
+    space = space_with(BARRIER, rho=0.1)
+    found = motion_planner(name)(space, LEFT, RIGHT[None], 2000, np.random.default_rng(0)).path
+    shortest = ShortestPathTree(space, LEFT).path_to(RIGHT)
+    assert found is not None
+    assert shortest is not None
+    assert length(found) < 1.05 * length(shortest)
+
+
+def test_the_shortest_path_leads_to_the_nearest_goal():
+    """Of several goals visibility takes the one with the shortest way to it, not the one that is close by."""
+    space = space_with(BARRIER, rho=0.1)
+    goals = vectors([0.3, -1], [0, 0], [-1, 1.9])
+    path = motion_planner("visibility")(space, LEFT, goals, 0, np.random.default_rng(0)).path
+    assert path is not None
+    np.testing.assert_array_equal(path, [LEFT, goals[2]])
+
+
+def test_back_ends_agree():
+    """1,000 random queries, half of them through gaps without clearance.
+
+    No back end finds a path that the exact one denies. Where the exact one finds a path for a disc 5 mm larger, which
+    leaves this clearance on both sides, all of them find one, given many iterations.
+    """
+    rng = np.random.default_rng(0)
+    rrt, ompl, exact = (motion_planner(name) for name in ("rrt", "ompl", "visibility"))
+    missed = found = denied = 0
+    for _ in range(100):
+        cores = random_cores(rng)
+        tight, roomy = space_with(*cores), space_with(*cores, rho=RADIUS - CLEARANCE)
+        draws = rng.uniform(*BOUNDS, (2000, 2))
+        draws = draws[tight.points_free(draws)][:20]
+        for start, goal in draws[: len(draws) // 2 * 2].reshape(-1, 2, 2):
+            path = exact(tight, start, goal[None], 0, rng).path
+            assert path is None or (tight.path_free(path) and roomy.path_free(path))
+            for plan, iterations in ((rrt, 1000), (ompl, 200)):
+                rival = plan(tight, start, goal[None], iterations, rng).path
+                assert rival is None or tight.path_free(rival)
+                assert rival is None or path is not None
+            if path is None:
+                denied += 1
+                continue
+            found += 1
+            missed += sum(plan(roomy, start, goal[None], 50_000, rng).path is None for plan in (rrt, ompl))
+    assert missed == 0
+    assert found > 300
+    assert denied > 100
