@@ -15,7 +15,7 @@ from planner.kernel import points_free
 from planner.lgp_constraints import TOUCH_GAP
 from planner.lgp_motion import after
 from planner.logic import Skeleton, Surface
-from planner.motion_ompl import rrt_connect
+from planner.motion import motion_planner
 from planner.problem import Configuration, Problem
 from planner.settings import Settings
 from planner.shortcut import shortcut
@@ -42,6 +42,7 @@ def motions_between(
         should_stop: Asked in every iteration of RRT-Connect.
     """
     configuration, motions = problem.initial, []
+    plan_motion = motion_planner(settings.motion)
     for k, action in enumerate(skeleton):
         arrived = after(configuration, skeleton, switches, k)
         if action.is_pick:
@@ -55,7 +56,7 @@ def motions_between(
             return None
         counters["rrt_calls"] += 1
         goal = switches[k][None]
-        found = rrt_connect(space, configuration.agent, goal, settings.motion_iterations, rng, should_stop)
+        found = plan_motion(space, configuration.agent, goal, settings.motion_iterations, rng, should_stop)
         counters["rrt_iterations"] += found.iterations
         if found.path is None:
             return None

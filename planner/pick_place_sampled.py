@@ -1,4 +1,7 @@
-"""Pick-and-place subproblems as published: switch configurations by a nonlinear program, motions by RRT-Connect."""
+"""Pick-and-place subproblems as published: switch configurations by a nonlinear program, motions by RRT-Connect.
+
+The setting `motion` puts another motion planner in the place of OMPL's RRT-Connect.
+"""
 
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -9,7 +12,7 @@ from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace, ObstacleSet
 from planner.contact_curve import ContactCurve
 from planner.kernel import BoolArray
-from planner.motion_ompl import rrt_connect
+from planner.motion import motion_planner
 from planner.nlp import SwitchQuery
 from planner.pick_place import PickPlace, Region
 from planner.problem import Configuration, Problem
@@ -37,6 +40,7 @@ class SampledPickPlace:
         self._rng = rng
         self._counters = counters
         self._should_stop = should_stop
+        self._plan_motion = motion_planner(settings.motion)
         self._agent_space = problem.agent_space(configuration)
 
     def reachable(self, index: int) -> bool:
@@ -112,7 +116,7 @@ class SampledPickPlace:
     ) -> FloatArray | None:
         self._counters["rrt_calls"] += 1
         budget = self._settings.motion_iterations if iterations is None else iterations
-        result = rrt_connect(space, start, goals, budget, self._rng, self._should_stop)
+        result = self._plan_motion(space, start, goals, budget, self._rng, self._should_stop)
         self._counters["rrt_iterations"] += result.iterations
         if result.path is None:
             return None

@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from pcg.errors import InputError
 from planner.mbts_settings import MbtsSettings
+from planner.motion import MOTION_PLANNERS
 
 METHODS = ("Rnd+FPR", "Rnd+FP", "Rnd+FR", "Rnd+R", "Btl+FPR", "Hum+R", "MBTS", "MBTS-rrt", "Push")
 """Names of the methods.
@@ -32,6 +33,7 @@ class Settings(MbtsSettings):
             published scene files are 0.1 m tables in the puzzles and 0.2 m tables in the generated scenes.
         grasp_starts: Starts on the contact curve for one switch-configuration problem.
         placement_samples: Placements tried in a region, its centre first.
+        motion: Motion planner of the faithful preset and of MBTS-rrt, one of `planner.motion.MOTION_PLANNERS`.
         reach_iterations: Iterations of RRT-Connect for the question whether an object can be reached.
         motion_iterations: Iterations of RRT-Connect for a motion between switch configurations.
         motion_attempts: Switch configurations of one subproblem for which motions are sought.
@@ -52,6 +54,7 @@ class Settings(MbtsSettings):
     subgoal_size: float = 0.1
     grasp_starts: int = 12
     placement_samples: int = 8
+    motion: str = "ompl"
     reach_iterations: int = 20_000
     motion_iterations: int = 20_000
     motion_attempts: int = 2
@@ -65,6 +68,8 @@ class Settings(MbtsSettings):
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise InputError("method", f"found {self.method!r}, allowed are {', '.join(METHODS)}")
+        if self.motion not in MOTION_PLANNERS:
+            raise InputError("motion", f"found {self.motion!r}, allowed are {', '.join(MOTION_PLANNERS)}")
         if not self.time_limit > 0:
             raise InputError("time limit", f"found {self.time_limit}, must be > 0 seconds")
 

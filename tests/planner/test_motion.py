@@ -1,14 +1,20 @@
 """The back ends of motion queries: one interface, and they never contradict each other."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace, ObstacleSet
 from planner.motion import MOTION_PLANNERS, OMPL_PLANNERS, motion_planner
+from planner.pick_place import Region
+from planner.problem import Problem
+from planner.settings import settings_for
+from planner.subproblems import subproblem_solvers
 from planner.visibility import ShortestPathTree
 from tests.planner.plain_geometry import length
-from tests.planner.scenes import vectors
+from tests.planner.scenes import body, room, vectors, violations, wall
 
 BOUNDS = vectors([-2, -2], [2, 2])
 CORNERS = vectors([-1, -1], [1, -1], [1, 1], [-1, 1])
@@ -95,6 +101,20 @@ def test_the_shortest_path_leads_to_the_nearest_goal():
     path = motion_planner("visibility")(space, LEFT, goals, 0, np.random.default_rng(0)).path
     assert path is not None
     np.testing.assert_array_equal(path, [LEFT, goals[2]])
+
+
+@pytest.mark.parametrize("name", ["rrt", "visibility", "ompl:RRT"])
+def test_subproblems_are_solved_with_any_back_end(name: str):
+    """The faithful preset plans a pick-and-place around a wall with the motion planner that the settings name."""
+    scene = room(wall(0, -0.5, 0.2, 2), objects=(body("obj", -1, -0.5),), agent=(-1.5, -1.5), goal=(1.5, -0.5))
+    counters = Counter[str]()
+    solver_for = subproblem_solvers(
+        Problem(scene), settings_for("faithful", motion=name), np.random.default_rng(0), counters, lambda: False
+    )
+    step = solver_for(Problem(scene).initial).pick_place(0, Region.of_goal(scene.goal))
+    assert step is not None
+    assert violations(scene, step) == set()
+    assert (counters["rrt_iterations"] == 0) == (name == "visibility")
 
 
 def test_back_ends_agree():

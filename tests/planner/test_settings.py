@@ -40,6 +40,13 @@ def test_time_limits_are_positive(seconds: float):
         Settings(time_limit=seconds)
 
 
+def test_unknown_motion_planners_are_refused():
+    """The message names what was found and what is allowed; by default OMPL plans motions, as published."""
+    assert {settings.motion for settings in PRESETS.values()} == {"ompl"}
+    with pytest.raises(InputError, match=r"motion: found 'ompl:PRM', allowed are ompl, rrt, visibility, ompl:RRT"):
+        Settings(motion="ompl:PRM")
+
+
 @pytest.mark.parametrize("preset", ["fast", "faithful"])
 def test_presets_are_named_after_themselves(preset: str):
     """`settings_for` gives the preset with changes, the others stay."""
