@@ -194,6 +194,9 @@ def solve(
     ] = "Rnd+FPR",
     seed: Seed = 0,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9, help="For each scene.")] = 60.0,
+    improve: Annotated[
+        float, typer.Option(metavar="SECONDS", min=0, max=1e9, help="Time for improving each plan that is found.")
+    ] = 0.0,
     settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",
     preset: Preset = None,
     tolerance: Tolerance = None,
@@ -206,7 +209,7 @@ def solve(
     from evaluate.commands.solve import run
     from planner import settings_for
 
-    of_planner = settings_for(settings, method=method, time_limit=time_limit)
+    of_planner = settings_for(settings, method=method, time_limit=time_limit, improve=improve)
     _exit(run(scenes, out, of_planner, seed, preset=preset, tolerance=tolerance, as_json=json))
 
 

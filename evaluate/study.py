@@ -8,7 +8,8 @@ The specification is a YAML file:
     seeds: 10              # 0..9; or a list
     settings: fast         # or faithful
     time_limit: 60         # seconds, as of `solve`
-    hard_limit: 2          # a trial is killed after this many time limits
+    improve: 0             # seconds for improving each plan, as of `solve`
+    hard_limit: 2          # a trial is killed after this many times both
     memory_mb: 4096        # memory of a worker; leave out for no limit
 
 Paths are relative to the specification, and may hold `*`, `?` and `**`.
@@ -50,6 +51,7 @@ class _Spec(Document):
     seeds: Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=1, max_length=MAX_SEEDS)]
     settings: Literal["fast", "faithful"] = "fast"
     time_limit: Annotated[float, Field(gt=0)] = 60.0
+    improve: Annotated[float, Field(ge=0)] = 0.0
     hard_limit: Annotated[float, Field(ge=1)] = 2.0
     memory_mb: Annotated[int, Field(ge=256)] | None = None
 
@@ -169,8 +171,8 @@ def read_study(path: Path) -> Study:
         scenes=scenes,
         methods=tuple(spec.methods),
         seeds=tuple(spec.seeds),
-        settings=settings_for(spec.settings, time_limit=spec.time_limit),
-        limits=Limits(max(SHORTEST_HARD_LIMIT, spec.hard_limit * spec.time_limit), spec.memory_mb),
+        settings=settings_for(spec.settings, time_limit=spec.time_limit, improve=spec.improve),
+        limits=Limits(max(SHORTEST_HARD_LIMIT, spec.hard_limit * (spec.time_limit + spec.improve)), spec.memory_mb),
     )
 
 

@@ -103,8 +103,8 @@ def warm_up(*every: Settings) -> None:
     """Solves a small scene with each of the settings, so that no trial's time includes loading and compiling."""
     for settings in every:
         # Nobody demonstrates a scene like this one, and no level is its source.
-        is_informed = settings.generator in {"Hum", "Push"}
-        run_trial(_warm_up_scene(), replace(settings, method="Rnd+R") if is_informed else settings, 0)
+        method = "Rnd+R" if settings.generator in {"Hum", "Push"} else settings.method
+        run_trial(_warm_up_scene(), replace(settings, method=method, improve_rounds=1), 0)
 
 
 def _warm_up_scene() -> Scene:

@@ -40,12 +40,23 @@ def _mbts(
     return mbts.solve(scene, settings, rng, should_stop=should_stop, on_progress=on_progress)
 
 
-SOLVERS: dict[str, Solver] = dict.fromkeys(METHODS, search.solve) | {
-    "MBTS": _mbts,
-    "MBTS-rrt": _mbts,
-    "Push": push.solve,
-}
+_BESIDES_SEARCH: dict[str, Solver] = {"MBTS": _mbts, "MBTS-rrt": _mbts, "Push": push.solve}
+
+SOLVERS: dict[str, Solver] = {method: _BESIDES_SEARCH.get(method, search.solve) for method in METHODS}
 """Searches by the name of the method."""
+
+
+def _improve(
+    scene: Scene,
+    result: PlanResult,
+    settings: Settings,
+    rng: np.random.Generator,
+    should_stop: Callable[[], bool],
+) -> PlanResult:
+    # The verification that ends an improvement imports shapely, which first plans need not wait for.
+    from planner.improve import improve  # noqa: PLC0415  # see above
+
+    return improve(scene, result, settings, rng, should_stop=should_stop)
 
 
 def solve(
@@ -56,16 +67,21 @@ def solve(
     should_stop: Callable[[], bool] = lambda: False,
     on_progress: Callable[[Progress], object] = lambda _: None,
 ) -> PlanResult:
-    """Searches by the method of `settings` for a plan that brings the goal-object to the goal.
+    """Searches by the method of `settings` for a plan that brings the goal-object to the goal, and may improve it.
 
     Args:
         scene: The puzzle.
         settings: Method and budgets.
         rng: Source of all randomness.
-        should_stop: Asked between subproblems; True ends the search with status `timeout`.
+        should_stop: Asked between subproblems; True ends the search with status `timeout`, or the improvement.
         on_progress: Told after every expansion that did not end the search.
+
+    Returns:
+        The first plan found, or with `settings.improve` one that is as good or better. Its `time_s` is the time to the
+        first plan in either case.
 
     Raises:
         InputError: bodies of the scene overlap at the start, or the scene lacks what the method needs.
     """
-    return SOLVERS[settings.method](scene, settings, rng, should_stop=should_stop, on_progress=on_progress)
+    result = SOLVERS[settings.method](scene, settings, rng, should_stop=should_stop, on_progress=on_progress)
+    return _improve(scene, result, settings, rng, should_stop) if settings.improve else result

@@ -4,6 +4,7 @@ Minkowski sums depend on shapes only, so each pair of bodies is summed once; a c
 sums moved to where its objects are.
 """
 
+import copy
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -74,6 +75,12 @@ class Problem:
         self.object_objects = [[for_object(body) for body in objects] for for_object in for_objects]
         self._sight_walls = _fixed(scene.walls, partial(sight_obstacles, tolerance=tolerance))
         self.sight_objects = [sight_obstacles(body, tolerance) for body in objects]
+
+    def starting_at(self, configuration: Configuration) -> Self:
+        """The same problem from another configuration on, one that can be reached."""
+        other = copy.copy(self)
+        other.initial = configuration
+        return other
 
     def at_goal(self, configuration: Configuration) -> bool:
         """Whether the goal-object's centre lies in the goal."""

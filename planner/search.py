@@ -54,6 +54,14 @@ def solve(
 class Search:
     """One run of Algorithm 1.
 
+    Args:
+        problem: The problem.
+        settings: Method and budgets.
+        rng: Source of all randomness.
+        should_stop: Asked between subproblems; True ends the search with status `timeout`.
+        on_progress: Told after every expansion that did not end the search.
+        admits: Asked whether a configuration may join the tree, by the steps that lead there.
+
     Attributes:
         nodes: Afterwards the search tree.
         solution: Afterwards the configuration with the goal-object at the goal, reached from one of `nodes`; None if
@@ -67,6 +75,7 @@ class Search:
         rng: np.random.Generator,
         should_stop: Callable[[], bool] = lambda: False,
         on_progress: Callable[[Progress], object] = lambda _: None,
+        admits: Callable[[list[PickPlace]], bool] = lambda _: True,
     ) -> None:
         self.problem = problem
         self.settings = settings
@@ -75,12 +84,13 @@ class Search:
         self.solution: Node | None = None
         self.counters: Counter[str] = Counter()
         self._frontier = Frontier(settings)
-        self._rejection = Rejection(settings)
+        self._rejection = Rejection(problem, settings)
         self._generator = GENERATORS[settings.generator](problem, settings)
         self._solver_for = subproblem_solvers(problem, settings, rng, self.counters, self._out_of_budget)
         self._started = time.perf_counter()
         self._should_stop = should_stop
         self._on_progress = on_progress
+        self._admits = admits
 
     def run(self) -> PlanResult:
         """Expands configurations until one solves the problem, none is left or the budget is spent."""
@@ -126,11 +136,14 @@ class Search:
         return [step for step in steps if step is not None]
 
     def _add(self, configuration: Configuration, parent: Node | None = None, step: PickPlace | None = None) -> None:
-        """Enters a configuration into the tree unless `rej` refuses it."""
+        """Enters a configuration into the tree unless it is not admitted or `rej` refuses it."""
+        node = Node(configuration, parent, step)
+        if not self._admits(node.steps()):
+            return
         if not self._rejection.accepts(configuration):
             self.counters["rejected"] += 1
             return
-        node = Node(configuration, parent, step, score(self.problem, configuration))
+        node.score = score(self.problem, configuration)
         self.nodes.append(node)
         self._frontier.add(node)
 

@@ -42,6 +42,8 @@ class Settings(MbtsSettings):
         rejection_cell: Edge of the cells in which rejection compares object positions [m].
         expansions: How often one configuration may be expanded.
         max_expansions: Expansions in all after which the search gives up.
+        improve: Wall time for improving a plan once it is found [s]; 0 keeps the first plan.
+        improve_rounds: Rounds of local search and restarts after which improvement ends.
         demonstrations: Folder with the files `{scene}.yaml` of method Hum; None for those that come with the product.
     """
 
@@ -63,6 +65,8 @@ class Settings(MbtsSettings):
     rejection_cell: float = 0.1
     expansions: int = 2
     max_expansions: int = 100_000
+    improve: float = 0.0
+    improve_rounds: int = 100_000
     demonstrations: str | None = None
 
     def __post_init__(self) -> None:
@@ -72,6 +76,8 @@ class Settings(MbtsSettings):
             raise InputError("motion", f"found {self.motion!r}, allowed are {', '.join(MOTION_PLANNERS)}")
         if not self.time_limit > 0:
             raise InputError("time limit", f"found {self.time_limit}, must be > 0 seconds")
+        if not self.improve >= 0:
+            raise InputError("improve", f"found {self.improve}, must be >= 0 seconds")
 
     @property
     def generator(self) -> str:
