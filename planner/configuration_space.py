@@ -31,6 +31,7 @@ class ObstacleSet:
         rho: (K,) radii [m]; a negative one shrinks its polygon.
         boxes: (K, 4) [m] x_min, y_min, x_max, y_max of the inflated polygons.
         corners: (C, 2) [m] where a shortest path may turn: vertices of tight polygons around the obstacles.
+        normals: (C, 4) the x and y of the outward unit normals of the two tangents that meet in each corner.
     """
 
     vertices: FloatArray
@@ -38,6 +39,7 @@ class ObstacleSet:
     rho: FloatArray
     boxes: FloatArray
     corners: FloatArray
+    normals: FloatArray
 
     @classmethod
     def of(cls, polygons: Sequence[FloatArray], rho: Sequence[float]) -> Self:
@@ -52,6 +54,7 @@ class ObstacleSet:
             radii,
             np.array(boxes, dtype=np.float64).reshape(-1, 4),
             np.vstack([np.empty((0, 2)), *(circumscribed(polygon, r) for polygon, r in pairs)]),
+            np.vstack([np.empty((0, 4)), *(_tangent_normals(polygon, r) for polygon, r in pairs)]),
         )
 
     @classmethod
@@ -66,17 +69,19 @@ class ObstacleSet:
             np.concatenate([s.rho for s in members]),
             np.concatenate([s.boxes for s in members]),
             np.concatenate([s.corners for s in members]),
+            np.concatenate([s.normals for s in members]),
         )
 
     def moved(self, by: FloatArray) -> Self:
         """The set translated by the vector `by` (2,) [m]."""
         # `np.tile` and `dataclasses.replace` would take longer than all the rest.
         boxes = self.boxes + np.concatenate([by, by])
-        return type(self)(self.vertices + by, self.first, self.rho, boxes, self.corners + by)
+        return type(self)(self.vertices + by, self.first, self.rho, boxes, self.corners + by, self.normals)
 
     def with_free_corners(self) -> Self:
         """The same obstacles; corners that lie in one of them are dropped."""
-        return replace(self, corners=self.corners[kernel.points_free(self.corners, *self.arrays)])
+        free = kernel.points_free(self.corners, *self.arrays)
+        return replace(self, corners=self.corners[free], normals=self.normals[free])
 
     def near(self, box: FloatArray) -> Self:
         """The obstacles whose boxes meet the rectangle `box` (2, 2) [m], lower and upper corner; no corners."""
@@ -88,6 +93,7 @@ class ObstacleSet:
             self.rho[keep],
             self.boxes[keep],
             np.empty((0, 2)),
+            np.empty((0, 4)),
         )
 
     def __len__(self) -> int:
@@ -144,19 +150,30 @@ def circumscribed(polygon: FloatArray, rho: float) -> FloatArray:
     it is free on both sides. A negative `rho` shrinks the polygon and adds no vertices.
     """
     outset = rho + NUMERIC_SLACK / 2
+    vertices, angles, halves = _corner_angles(polygon, rho)
+    directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.asarray(vertices + outset / np.cos(halves)[:, None] * directions)
+
+
+def _tangent_normals(polygon: FloatArray, rho: float) -> FloatArray:
+    """For each corner of `circumscribed` the x and y of the normals of the edge before and the edge behind (C, 4)."""
+    _, angles, halves = _corner_angles(polygon, rho)
+    before, behind = angles - halves, angles + halves
+    return np.column_stack([np.cos(before), np.sin(before), np.cos(behind), np.sin(behind)])
+
+
+def _corner_angles(polygon: FloatArray, rho: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of each corner of `circumscribed` the nearest vertex (C, 2), the direction there, and half the turn (C,) [rad]."""
     if len(polygon) == 1:
         normals, turns = np.array([0.0]), np.array([2 * np.pi])
     else:
         edges = polygon - np.roll(polygon, 1, axis=0)
         normals = np.arctan2(-edges[:, 0], edges[:, 1])
         turns = (np.roll(normals, -1) - normals) % (2 * np.pi)
-    corners = []
-    for vertex, normal, turn in zip(polygon, normals, turns, strict=True):
-        steps = max(1, int(np.ceil(turn / _ARC_STEP - 1e-9))) if rho > 0 else 1
-        half = turn / (2 * steps)
-        angles = normal + half * (2 * np.arange(steps) + 1)
-        corners.append(vertex + outset / np.cos(half) * np.column_stack([np.cos(angles), np.sin(angles)]))
-    return np.vstack(corners)
+    steps = np.maximum(1, np.ceil(turns / _ARC_STEP - 1e-9)).astype(int) if rho > 0 else np.ones(len(polygon), int)
+    halves = np.repeat(turns / (2 * steps), steps)
+    step = np.concatenate([np.arange(n) for n in steps])
+    return np.repeat(polygon, steps, axis=0), np.repeat(normals, steps) + halves * (2 * step + 1), halves
 
 
 def agent_obstacles(agent: Agent, body: Body, tolerance: float) -> ObstacleSet:

@@ -1,15 +1,17 @@
 """The configurations that the search knows: which to expand next, and which to refuse ([L], section IV)."""
 
 import heapq
-from collections import Counter
+from collections import defaultdict
 from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
 
+from converter.shape import FloatArray
 from planner.pick_place import PickPlace
-from planner.problem import Configuration
+from planner.problem import Configuration, Problem
 from planner.settings import Settings
+from planner.visibility import ShortestPathTree
 
 
 @dataclass(eq=False)
@@ -37,6 +39,11 @@ class Node:
             steps.append(node.step)
             node = node.parent
         return steps[::-1]
+
+    @property
+    def pick_places(self) -> int:
+        """How often an object is picked and placed on the way from the start."""
+        return sum(not step.is_regrasp for step in self.steps())
 
 
 class Frontier:
@@ -69,18 +76,32 @@ class Frontier:
 
 
 class Rejection:
-    """`rej` of [L]: refuses a configuration if enough others have the same discretised object positions (R)."""
+    """`rej` of [L]: refuses a configuration if enough others are equal to it (R).
 
-    def __init__(self, settings: Settings) -> None:
+    Equal are configurations whose discretised object positions agree. That loses the ones that differ in where the
+    agent is shut in, on which side of an object in a corridor, say. `rejection_by_access` tells these apart: equal
+    are then only configurations between which the agent can drive.
+    """
+
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        self._problem = problem
         self._active = "R" in settings.letters
+        self._by_access = settings.rejection_by_access
         self._cell = settings.rejection_cell
         self._limit = settings.equal_configurations
-        self._seen: Counter[bytes] = Counter()
+        self._accepted: defaultdict[bytes, list[FloatArray]] = defaultdict(list)
 
     def accepts(self, configuration: Configuration) -> bool:
         """Whether fewer than the allowed number of equal configurations have been accepted; counts this one."""
         key = np.floor(configuration.objects / self._cell).astype(np.int64).tobytes()
-        if self._active and self._seen[key] >= self._limit:
+        agents = self._accepted[key]
+        if self._active and self._number_of_equals(configuration, agents) >= self._limit:
             return False
-        self._seen[key] += 1
+        agents.append(configuration.agent)
         return True
+
+    def _number_of_equals(self, configuration: Configuration, agents: list[FloatArray]) -> int:
+        if not self._by_access or len(agents) < self._limit:
+            return len(agents)
+        tree = ShortestPathTree(self._problem.agent_space(configuration), configuration.agent)
+        return int(tree.reaches(np.array(agents)).sum())

@@ -23,6 +23,9 @@ SMALLEST, LARGEST = 1e-3, 1.0
 REPAIRS = 8
 """Grasps tried for a carry whose own grasp has become impossible."""
 
+GRASP_MARGIN = 1e-6
+"""Distance [m] of grasps from the ends of a free stretch: at the very end rounding decides who sees a collision."""
+
 KEPT_STRETCHES = 512
 """Configurations whose free grasps are remembered."""
 
@@ -78,13 +81,26 @@ class Moves:
     def fewer(self, route: Route) -> Carries:
         """Without one or two of the carries; grasps that this makes impossible are replaced."""
         dropped = self._rng.permutation(len(route.carries))[: self._rng.integers(1, 3)]
-        return self._repaired(carry for i, carry in enumerate(route.carries) if i not in dropped)
+        carries = [
+            carry if self._rng.random() < 0.5 else self._moved(route, i)
+            for i, carry in enumerate(route.carries)
+            if i not in dropped
+        ]
+        return self._repaired(carries)
 
     def other_order(self, route: Route) -> Carries:
         """Two carries swapped; grasps that this makes impossible are replaced."""
         carries = list(route.carries)
         i, j = self._rng.integers(len(carries), size=2)
         carries[i], carries[j] = carries[j], carries[i]
+        return self._repaired(carries)
+
+    def shaken(self, route: Route) -> Carries:
+        """Any of the carries in other grasps and to other placements, to leave a local optimum."""
+        carries = list(route.carries)
+        for i in range(len(carries)):
+            if self._rng.random() < 0.5:
+                carries[i] = self._regrasped(self._before(route, i), self._moved(route, i))
         return self._repaired(carries)
 
     def _repaired(self, carries: Iterable[Carry]) -> Carries:
@@ -126,7 +142,9 @@ class Moves:
             if len(self._stretches) >= KEPT_STRETCHES:
                 self._stretches.clear()
             obstacles = self._problem.agent_space(configuration, held=index).obstacles
-            self._stretches[key] = self._curves[index].free_stretches(obstacles.moved(-configuration.objects[index]))
+            stretches = self._curves[index].free_stretches(obstacles.moved(-configuration.objects[index]))
+            margin = np.minimum(GRASP_MARGIN, (stretches[:, 1] - stretches[:, 0]) / 2)
+            self._stretches[key] = stretches + margin[:, None] * np.array([1.0, -1.0])
         return self._stretches[key]
 
     def _moved(self, route: Route, i: int) -> Carry:

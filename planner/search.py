@@ -17,6 +17,7 @@ import numpy as np
 
 from converter.plan import Status
 from converter.scene import Scene
+from converter.shape import FloatArray
 from planner.assemble import segments_of, subgoals_of
 from planner.frontier import Frontier, Node, Rejection
 from planner.heuristics import score
@@ -60,7 +61,7 @@ class Search:
         rng: Source of all randomness.
         should_stop: Asked between subproblems; True ends the search with status `timeout`.
         on_progress: Told after every expansion that did not end the search.
-        admits: Asked whether a configuration may join the tree, by the steps that lead there.
+        max_pick_places: The most pick-places that a plan may have; None for no limit.
 
     Attributes:
         nodes: Afterwards the search tree.
@@ -75,7 +76,7 @@ class Search:
         rng: np.random.Generator,
         should_stop: Callable[[], bool] = lambda: False,
         on_progress: Callable[[Progress], object] = lambda _: None,
-        admits: Callable[[list[PickPlace]], bool] = lambda _: True,
+        max_pick_places: int | None = None,
     ) -> None:
         self.problem = problem
         self.settings = settings
@@ -90,7 +91,7 @@ class Search:
         self._started = time.perf_counter()
         self._should_stop = should_stop
         self._on_progress = on_progress
-        self._admits = admits
+        self._max_pick_places = np.inf if max_pick_places is None else max_pick_places
 
     def run(self) -> PlanResult:
         """Expands configurations until one solves the problem, none is left or the budget is spent."""
@@ -112,38 +113,38 @@ class Search:
             for index in range(problem.n_objects):
                 if not subproblems.reachable(index):
                     continue
-                for step in self._solved_subproblems(subproblems, node.configuration, index):
+                for step in self._solved_subproblems(subproblems, node, index):
                     self._add(step.applied_to(node.configuration), node, step)
             self._frontier.add(node)
             self._on_progress(self._progress())
         # Where the last expansion was cut short, something may have been left.
         return self._result(Status.TIMEOUT if self._out_of_budget() else Status.EXHAUSTED)
 
-    def _solved_subproblems(
-        self, subproblems: PickPlaceSolver, configuration: Configuration, index: int
-    ) -> list[PickPlace]:
+    def _solved_subproblems(self, subproblems: PickPlaceSolver, node: Node, index: int) -> list[PickPlace]:
         """`sub_solve` for each of `propose_subgoals`, the trivial one last."""
-        placeable = partial(subproblems.placeable, index)
-        proposal = propose_subgoals(
-            self.problem, self._generator, configuration, index, placeable, self.settings, self.rng
-        )
         steps = []
-        for subgoal in proposal.subgoals:
+        for subgoal in self._subgoals(subproblems, node, index):
             if self._out_of_budget():
                 break
             steps.append(subproblems.pick_place(index, Region.around(subgoal, self.settings.subgoal_size)))
         steps.append(subproblems.regrasp(index))
         return [step for step in steps if step is not None]
 
+    def _subgoals(self, subproblems: PickPlaceSolver, node: Node, index: int) -> FloatArray:
+        if node.pick_places + 2 > self._max_pick_places:
+            # After one more, the goal-object would still have to be brought to the goal.
+            return np.empty((0, 2))
+        placeable = partial(subproblems.placeable, index)
+        return propose_subgoals(
+            self.problem, self._generator, node.configuration, index, placeable, self.settings, self.rng
+        ).subgoals
+
     def _add(self, configuration: Configuration, parent: Node | None = None, step: PickPlace | None = None) -> None:
-        """Enters a configuration into the tree unless it is not admitted or `rej` refuses it."""
-        node = Node(configuration, parent, step)
-        if not self._admits(node.steps()):
-            return
+        """Enters a configuration into the tree unless `rej` refuses it."""
         if not self._rejection.accepts(configuration):
             self.counters["rejected"] += 1
             return
-        node.score = score(self.problem, configuration)
+        node = Node(configuration, parent, step, score(self.problem, configuration))
         self.nodes.append(node)
         self._frontier.add(node)
 

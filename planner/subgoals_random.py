@@ -1,4 +1,9 @@
-"""Random subgoals: uniform over the free positions of the object (`Rnd` of [L], section IV-B)."""
+"""Random subgoals (`Rnd` of [L], section IV-B): uniform over free positions, in the room and ever closer to the object.
+
+Where an object can be moved by centimetres only between two regrasps, as in Maze, one uniform position in two thousand
+is of use. So equal shares of the candidates come from the room and from squares around the object, each half as wide
+as the one before. One scale is the room alone, as published.
+"""
 
 import numpy as np
 
@@ -11,11 +16,11 @@ _DRAWS_PER_CANDIDATE = 50
 
 
 class RandomSubgoals:
-    """Uniform candidates; nothing is computed beforehand."""
+    """Uniform candidates at `Settings.candidate_scales` scales; nothing is computed beforehand."""
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        del settings
         self._problem = problem
+        self._scales = settings.candidate_scales
         self.time_s = 0.0
 
     def candidates(self, configuration: Configuration, index: int, n: int, rng: np.random.Generator) -> FloatArray:
@@ -23,8 +28,16 @@ class RandomSubgoals:
         space = self._problem.object_space(configuration, index)
         found = np.empty((0, 2))
         for _ in range(_DRAWS_PER_CANDIDATE):
-            draws = rng.uniform(space.bounds[0], space.bounds[1], (n, 2))
+            draws = self._draws(space.bounds, configuration.objects[index], n, rng)
             found = np.vstack([found, draws[space.points_free(draws)]])
             if len(found) >= n:
                 break
         return found[:n]
+
+    def _draws(self, room: FloatArray, here: FloatArray, n: int, rng: np.random.Generator) -> FloatArray:
+        draws = rng.uniform(room[0], room[1], (n, 2))
+        scale = rng.integers(self._scales, size=n)
+        near = scale > 0
+        half = ((room[1] - room[0]) / 2 / 2.0 ** scale[near, None]).max(axis=1, keepdims=True)
+        draws[near] = here + rng.uniform(-half, half)
+        return draws

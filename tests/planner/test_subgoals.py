@@ -12,7 +12,7 @@ from converter.shape import FloatArray, Part
 from planner.heuristics import scores_if
 from planner.kernel import BoolArray
 from planner.problem import Configuration, Problem
-from planner.settings import METHODS, Settings
+from planner.settings import METHODS, Settings, settings_for
 from planner.subgoals import GENERATORS, Proposal, filter_best, propose_subgoals
 from planner.subgoals_random import RandomSubgoals
 from tests.planner.scenes import body, room, vectors, wall
@@ -123,7 +123,7 @@ def test_every_method_of_the_forward_search_has_a_generator():
 @pytest.mark.parametrize("index", [0, 1])
 def test_random_candidates_are_free_and_everywhere(index: int):
     """As many as asked for, free of walls and the other object, in all quarters of the room, fixed by the seed."""
-    generator = RandomSubgoals(PROBLEM, WITHOUT)
+    generator = RandomSubgoals(PROBLEM, settings_for("faithful"))
     found, again = (generator.candidates(PROBLEM.initial, index, 200, np.random.default_rng(3)) for _ in range(2))
     np.testing.assert_array_equal(found, again)
     assert found.shape == (200, 2)
@@ -132,6 +132,18 @@ def test_random_candidates_are_free_and_everywhere(index: int):
     assert len(quarters) == 4
     assert min(quarters.values()) > 20
     assert np.abs(found).max() <= 2
+
+
+def test_random_candidates_at_every_scale():
+    """Each of six squares around the object, the room and ever smaller ones, has its share of the candidates."""
+    here = PROBLEM.initial.objects[0]
+    settings = Settings(candidate_scales=6)
+    found = RandomSubgoals(PROBLEM, settings).candidates(PROBLEM.initial, 0, 3000, np.random.default_rng(0))
+    distances = np.abs(found - here).max(axis=1)
+    shares = [float((distances <= 2 / 2**scale).mean()) for scale in range(6)]
+    assert shares == sorted(shares, reverse=True)
+    assert all(share > (5 - scale + 0.5) / 6 for scale, share in enumerate(shares))
+    assert shares[0] < 1
 
 
 def test_an_object_that_fits_nowhere_else_has_no_candidates():
