@@ -1,6 +1,6 @@
 """A scene prepared for planning: configurations and the configuration spaces that belong to them.
 
-Minkowski sums depend on shapes only, so each pair of bodies is summed once; a configuration's obstacles are the cached
+Minkowski sums depend on shapes only, so each pair of shapes is summed once; a configuration's obstacles are the cached
 sums moved to where its objects are.
 """
 
@@ -66,15 +66,16 @@ class Problem:
         self.goal_index = scene.object_names.index(scene.goal.object)
         self.initial = Configuration(scene.agent.position, np.array([body.position[:2] for body in scene.objects]))
         tolerance, objects = scene.tolerance, scene.objects
-        for_agent = partial(agent_obstacles, scene.agent, tolerance=tolerance)
-        for_objects = [partial(body_obstacles, moving, tolerance=tolerance) for moving in objects]
+        for_agent = _once_a_shape(partial(agent_obstacles, scene.agent, tolerance=tolerance))
+        for_objects = [_once_a_shape(partial(body_obstacles, moving, tolerance=tolerance)) for moving in objects]
+        for_sight = _once_a_shape(partial(sight_obstacles, tolerance=tolerance))
         _require_valid_start(scene, for_agent, for_objects)
         self.agent_walls = _fixed(scene.walls, for_agent)
         self.agent_objects = [for_agent(body) for body in objects]
         self.object_walls = [_fixed(scene.walls, for_object) for for_object in for_objects]
         self.object_objects = [[for_object(body) for body in objects] for for_object in for_objects]
-        self._sight_walls = _fixed(scene.walls, partial(sight_obstacles, tolerance=tolerance))
-        self.sight_objects = [sight_obstacles(body, tolerance) for body in objects]
+        self._sight_walls = _fixed(scene.walls, for_sight)
+        self.sight_objects = [for_sight(body) for body in objects]
 
     def starting_at(self, configuration: Configuration) -> Self:
         """The same problem from another configuration on, one that can be reached."""
@@ -123,6 +124,20 @@ class Problem:
 
 RelativeObstacles = Callable[[Body], ObstacleSet]
 """The obstacles that a body is to some moving body, relative to the position of the former."""
+
+
+def _once_a_shape(obstacles: RelativeObstacles) -> RelativeObstacles:
+    """The same function, which computes bodies that differ in their places only once."""
+    known: dict[tuple[object, ...], ObstacleSet] = {}
+
+    def remembered(body: Body) -> ObstacleSet:
+        radii = (part.edge_radius for part in body.parts)
+        shape = (body.bottom_top, *radii, *(core.tobytes() for core in body.cores))
+        if shape not in known:
+            known[shape] = obstacles(body)
+        return known[shape]
+
+    return remembered
 
 
 def _fixed(walls: Sequence[Body], obstacles: RelativeObstacles) -> ObstacleSet:
