@@ -171,5 +171,5 @@ class Search:
         if status is not Status.EXHAUSTED:
             return None
         if len(self.nodes) == 1 and self.counters["reachable"] == 0:
-            return "no object can be reached"
+            return "no object could be reached"
         return f"all {len(self.nodes)} configurations were expanded {self.settings.expansions} times"

@@ -1,5 +1,6 @@
 """Every parameter of the search in one place, with the value chosen and why."""
 
+import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
@@ -14,6 +15,20 @@ Of the forward search: subgoal generator (random, bottleneck, human), then F fil
 rejection. Of multi-bound tree search: trajectories by optimisation as published, or by RRT-Connect. Push lifts the
 solution of the level that the scene was converted from.
 """
+
+_COUNTS = (
+    "candidates",
+    "candidate_scales",
+    "subgoals_per_object",
+    "grasp_starts",
+    "placement_samples",
+    "reach_iterations",
+    "motion_iterations",
+    "motion_attempts",
+    "equal_configurations",
+    "expansions",
+    "max_expansions",
+)
 
 
 @dataclass(frozen=True)
@@ -80,10 +95,19 @@ class Settings(MbtsSettings):
             raise InputError("method", f"found {self.method!r}, allowed are {', '.join(METHODS)}")
         if self.motion not in MOTION_PLANNERS:
             raise InputError("motion", f"found {self.motion!r}, allowed are {', '.join(MOTION_PLANNERS)}")
-        if not self.time_limit > 0:
-            raise InputError("time limit", f"found {self.time_limit}, must be > 0 seconds")
-        if not self.improve >= 0:
-            raise InputError("improve", f"found {self.improve}, must be >= 0 seconds")
+        if self.preset not in ("fast", "faithful"):
+            raise InputError("settings", f"found {self.preset!r}, allowed are fast, faithful")
+        if not 0 < self.time_limit < math.inf:
+            raise InputError("time limit", f"found {self.time_limit}, must be a finite number of seconds > 0")
+        if not 0 <= self.improve < math.inf:
+            raise InputError("improve", f"found {self.improve}, must be a finite number of seconds >= 0")
+        for name in _COUNTS:
+            if getattr(self, name) < 1:
+                raise InputError(name, f"found {getattr(self, name)}, must be at least 1")
+        if not 0 < self.keep_share <= 1:
+            raise InputError("keep_share", f"found {self.keep_share}, must be > 0 and at most 1")
+        if not (self.subgoal_size >= 0 and self.rejection_cell > 0):
+            raise InputError("settings", "subgoal_size must be >= 0 and rejection_cell > 0")
 
     @property
     def generator(self) -> str:

@@ -95,12 +95,13 @@ def propose_subgoals(
     scores = scores_if(problem, configuration, index, candidates)
     passed = np.arange(len(candidates))
     if "F" in settings.letters and len(candidates):
-        passed = filter_best(scores, settings.keep_share, rng)
+        # At least as many as are drawn, so that as many are drawn with a filter as without.
+        keep = max(settings.subgoals_per_object, round(settings.keep_share * len(candidates)))
+        passed = filter_best(scores, keep, rng)
     return Proposal(candidates, scores, passed, rng.permutation(passed)[: settings.subgoals_per_object])
 
 
-def filter_best(scores: FloatArray, share: float, rng: np.random.Generator) -> IntArray:
-    """Indices of the best `share` of `scores` (n,), at least one; ties are broken at random."""
-    keep = max(1, round(share * len(scores)))
+def filter_best(scores: FloatArray, keep: int, rng: np.random.Generator) -> IntArray:
+    """Indices of the best `keep` of `scores` (n,), or all if there are fewer; ties are broken at random."""
     shuffled = rng.permutation(len(scores))
     return np.asarray(shuffled[np.argsort(-scores[shuffled], kind="stable")][:keep])

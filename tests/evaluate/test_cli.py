@@ -277,7 +277,7 @@ BAD_INPUT = {
     "unknown picture format": (["render", "room.yaml", "--out", "o", "--format", "svg"], "--format: found 'svg', allowed are png, gif"),
     "animated scene": (["render", "room.yaml", "--out", "o", "--format", "gif"], "room.yaml: gif shows plans in motion"),
     "negative seed": (["solve", "room.yaml", "--out", "o", "--seed", "-1"], "Invalid value for '--seed'"),
-    "no time": (["solve", "room.yaml", "--out", "o", "--time-limit", "0"], "time limit: found 0.0, must be > 0"),
+    "no time": (["solve", "room.yaml", "--out", "o", "--time-limit", "0"], "time limit: found 0.0, must be a finite number of seconds > 0"),
     "infinite time": (["solve", "room.yaml", "--out", "o", "--time-limit", "inf"], "Invalid value for '--time-limit'"),
     "tolerance that is no number": (["check", "room.yaml", "--tolerance", "nan"], "Invalid value for '--tolerance'"),
     "more targets than crates": (["generate", "--out", "o", "--targets", "3"], "options: 2 crates cannot cover 3"),

@@ -28,9 +28,9 @@ def test_a_result_and_its_scene_make_a_plan():
 def test_a_failure_is_a_plan_without_motion():
     """Failing to plan is a value, with what proves it."""
     scene = room()
-    plan = PlanResult(Status.EXHAUSTED, 1.0, certificate="no object can be reached").to_plan(scene, Settings(), 0)
+    plan = PlanResult(Status.EXHAUSTED, 1.0, certificate="no object could be reached").to_plan(scene, Settings(), 0)
     assert not plan.solved
-    assert plan.certificate == "no object can be reached"
+    assert plan.certificate == "no object could be reached"
     assert plan.segments == ()
 
 

@@ -274,7 +274,7 @@ def test_nothing_to_reach(preset: str):
     pen = [wall(0, 0.6, 1.8, 0.2), wall(0, -0.6, 1.8, 0.2), wall(0.9, 0, 0.2, 1.4), wall(-0.9, 0, 0.2, 1.4)]
     scene = room(*pen, objects=(body("obj", -1.5, -1.5),))
     result = solve(scene, settings_for(preset, reach_iterations=200), np.random.default_rng(0))
-    assert (result.status, result.certificate) == (Status.EXHAUSTED, "no object can be reached")
+    assert (result.status, result.certificate) == (Status.EXHAUSTED, "no object could be reached")
     assert (result.segments, result.counters["expansions"]) == ((), 2)
 
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import fields
+from typing import Any
 
 import pytest
 
@@ -36,7 +37,7 @@ def test_unknown_methods_are_refused(method: str):
 @pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan")])
 def test_time_limits_are_positive(seconds: float):
     """A limit of nothing is refused."""
-    with pytest.raises(InputError, match=r"time limit: found .*, must be > 0"):
+    with pytest.raises(InputError, match=r"time limit: found .*, must be a finite number of seconds > 0"):
         Settings(time_limit=seconds)
 
 
@@ -75,3 +76,19 @@ def test_the_document_holds_every_field():
     document = Settings().as_document()
     assert set(document) == {field.name for field in fields(Settings)}
     assert Settings(**json.loads(json.dumps(document))) == Settings()
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        ({"preset": "slow"}, "settings: found 'slow', allowed are fast, faithful"),
+        ({"time_limit": float("inf")}, "time limit: found inf, must be a finite number"),
+        ({"candidates": 0}, "candidates: found 0, must be at least 1"),
+        ({"keep_share": 1.5}, "keep_share: found 1.5, must be > 0 and at most 1"),
+        ({"rejection_cell": 0.0}, "rejection_cell > 0"),
+    ],
+)
+def test_values_that_make_no_sense_are_refused(changes: dict[str, Any], problem: str):
+    """Settings name the parameter and what is allowed."""
+    with pytest.raises(InputError, match=problem):
+        Settings(**changes)

@@ -46,13 +46,13 @@ def propose(settings: Settings, positions: FloatArray, seed: int = 0, index: int
 
 
 @given(
-    st.lists(st.sampled_from([0.0, 2.0, 5.0, 15.0]), min_size=1, max_size=30), st.floats(0.01, 1), st.integers(0, 99)
+    st.lists(st.sampled_from([0.0, 2.0, 5.0, 15.0]), min_size=1, max_size=30), st.integers(1, 40), st.integers(0, 99)
 )
-def test_the_filter_keeps_the_best_share(values: list[float], share: float, seed: int):
-    """At least one, no index twice, and none that is left out is better than one that is kept."""
+def test_the_filter_keeps_the_best(values: list[float], keep: int, seed: int):
+    """As many as asked for, no index twice, and none that is left out is better than one that is kept."""
     scores = np.array(values)
-    kept = filter_best(scores, share, np.random.default_rng(seed))
-    assert len(kept) == max(1, round(share * len(scores)))
+    kept = filter_best(scores, keep, np.random.default_rng(seed))
+    assert len(kept) == min(keep, len(scores))
     assert len(set(kept.tolist())) == len(kept)
     left_out = np.delete(scores, kept)
     assert len(left_out) == 0 or scores[kept].min() >= left_out.max()
@@ -62,7 +62,7 @@ def test_ties_are_broken_at_random():
     """Of equals each is kept about as often."""
     scores = np.array([1.0, 0.0, 1.0, 1.0, 1.0])
     rng = np.random.default_rng(0)
-    counts = Counter(int(i) for _ in range(400) for i in filter_best(scores, 0.4, rng))
+    counts = Counter(int(i) for _ in range(400) for i in filter_best(scores, 2, rng))
     assert set(counts) == {0, 2, 3, 4}
     assert min(counts.values()) > 140
 
@@ -155,3 +155,10 @@ def test_an_object_that_fits_nowhere_else_has_no_candidates():
     assert problem.object_space(problem.initial, 0).point_free(np.zeros(2))
     found = RandomSubgoals(problem, WITHOUT).candidates(problem.initial, 0, 100, np.random.default_rng(0))
     assert found.shape == (0, 2)
+
+
+@pytest.mark.parametrize("settings", [WITH_FILTER, WITHOUT])
+def test_as_many_are_drawn_with_a_filter_as_without(settings: Settings):
+    """Few candidates do not make the filter draw fewer subgoals."""
+    positions = np.random.default_rng(2).uniform(-1.9, 1.9, (8, 2))
+    assert len(propose(settings, positions).drawn) == settings.subgoals_per_object
