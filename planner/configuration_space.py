@@ -119,8 +119,8 @@ class ConfigurationSpace:
 
     def points_free(self, points: FloatArray) -> kernel.BoolArray:
         """For each of `points` (n, 2) whether it is free."""
-        inside = ((points >= self.bounds[0]) & (points <= self.bounds[1])).all(axis=1)
-        return np.asarray(inside & kernel.points_free(np.ascontiguousarray(points), *self.obstacles.arrays))
+        points = np.ascontiguousarray(points)
+        return np.asarray(kernel.points_free_within(points, self.bounds, *self.obstacles.arrays))
 
     def point_free(self, point: FloatArray) -> bool:
         """Whether `point` (2,) is free."""

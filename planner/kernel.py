@@ -138,8 +138,21 @@ def points_free(
     """For each of `points` (n, 2) whether it lies in no obstacle."""
     free = np.empty(len(points), np.bool_)
     for i in range(len(points)):
-        x, y = points[i]
+        x, y = points[i, 0], points[i, 1]
         free[i] = segment_free(x, y, x, y, vertices, first, rho, boxes)
+    return free
+
+
+@njit(cache=True)
+def points_free_within(
+    points: FloatArray, bounds: FloatArray, vertices: FloatArray, first: IntArray, rho: FloatArray, boxes: FloatArray
+) -> BoolArray:
+    """For each of `points` (n, 2) whether it lies in the closed rectangle `bounds` (2, 2) and in no obstacle."""
+    free = np.empty(len(points), np.bool_)
+    for i in range(len(points)):
+        x, y = points[i, 0], points[i, 1]
+        inside = bounds[0, 0] <= x <= bounds[1, 0] and bounds[0, 1] <= y <= bounds[1, 1]
+        free[i] = inside and segment_free(x, y, x, y, vertices, first, rho, boxes)
     return free
 
 

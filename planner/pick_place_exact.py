@@ -1,11 +1,13 @@
 """Pick-and-place subproblems by exact geometry: grasps on the contact curve, shortest paths by visibility graphs."""
 
 from collections import Counter
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
 
 from converter.shape import FloatArray
+from planner.configuration_space import ConfigurationSpace
 from planner.contact_curve import ContactCurve
 from planner.kernel import BoolArray
 from planner.pick_place import PickPlace, Region
@@ -22,10 +24,16 @@ class _Grasp:
         start: (2,) [m] agent centre at the pick.
     """
 
-    def __init__(self, problem: Problem, configuration: Configuration, index: int, offset: FloatArray) -> None:
+    def __init__(
+        self, position: FloatArray, offset: FloatArray, space_at: Callable[[FloatArray], ConfigurationSpace]
+    ) -> None:
         self.offset = offset
-        self.start = configuration.objects[index] + offset
-        self._space = problem.carry_space(configuration, index, offset)
+        self.start = position + offset
+        self._space_at = space_at
+
+    @cached_property
+    def _space(self) -> ConfigurationSpace:
+        return self._space_at(self.offset)
 
     @cached_property
     def _tree(self) -> ShortestPathTree:
@@ -116,7 +124,6 @@ class ExactPickPlace:
             obstacles = self._problem.agent_space(self._configuration, held=index).obstacles.moved(-position)
             offsets = self._curves[index].sample_free(self._settings.grasp_starts, obstacles, self._rng)
             reached = self._from_agent.reaches(position + offsets)
-            self._grasps[index] = [
-                _Grasp(self._problem, self._configuration, index, offset) for offset in offsets[reached]
-            ]
+            space_at = self._problem.carry_spaces(self._configuration, index)
+            self._grasps[index] = [_Grasp(position, offset, space_at) for offset in offsets[reached]]
         return self._grasps[index]

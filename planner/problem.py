@@ -103,11 +103,19 @@ class Problem:
 
     def carry_space(self, configuration: Configuration, index: int, grasp: FloatArray) -> ConfigurationSpace:
         """Where the agent's centre may be while it holds object `index` with its own centre at `grasp` from its."""
+        return self.carry_spaces(configuration, index)(grasp)
+
+    def carry_spaces(self, configuration: Configuration, index: int) -> Callable[[FloatArray], ConfigurationSpace]:
+        """`carry_space` as a function of the grasp; what does not depend on it is put together once."""
         agent, carried = self.agent_space(configuration, held=index), self.object_space(configuration, index)
-        lower = np.maximum(agent.bounds[0], carried.bounds[0] + grasp)
-        upper = np.minimum(agent.bounds[1], carried.bounds[1] + grasp)
-        obstacles = ObstacleSet.union([agent.obstacles, carried.obstacles.moved(grasp)])
-        return ConfigurationSpace(obstacles, np.array([lower, upper]))
+
+        def at(grasp: FloatArray) -> ConfigurationSpace:
+            lower = np.maximum(agent.bounds[0], carried.bounds[0] + grasp)
+            upper = np.minimum(agent.bounds[1], carried.bounds[1] + grasp)
+            obstacles = ObstacleSet.union([agent.obstacles, carried.obstacles.moved(grasp)])
+            return ConfigurationSpace(obstacles, np.array([lower, upper]))
+
+        return at
 
     def sight_blockers(self, configuration: Configuration, *ignored: int) -> ObstacleSet:
         """Walls and all objects but the `ignored` ones, as they block lines of sight."""
