@@ -84,6 +84,7 @@ class Search:
         self.nodes: list[Node] = []
         self.solution: Node | None = None
         self.counters: Counter[str] = Counter()
+        self._best_score = -np.inf
         self._frontier = Frontier(settings)
         self._rejection = Rejection(problem, settings)
         self._generator = GENERATORS[settings.generator](problem, settings)
@@ -146,11 +147,12 @@ class Search:
             return
         node = Node(configuration, parent, step, score(self.problem, configuration))
         self.nodes.append(node)
+        self._best_score = max(self._best_score, node.score)
         self._frontier.add(node)
 
     def _progress(self) -> Progress:
-        best = max(node.score for node in self.nodes)
-        return Progress(self.counters["expansions"], len(self.nodes), best, time.perf_counter() - self._started)
+        time_s = time.perf_counter() - self._started
+        return Progress(self.counters["expansions"], len(self.nodes), self._best_score, time_s)
 
     def _out_of_budget(self) -> bool:
         return self._should_stop() or time.perf_counter() - self._started > self.settings.time_limit
