@@ -142,6 +142,20 @@ def test_corners_of_sharp_obstacles_are_their_vertices(polygon: FloatArray, rho:
             assert height == pytest.approx(rho + NUMERIC_SLACK / 2, abs=NUMERIC_SLACK / 4)
 
 
+@settings(deadline=None)
+@given(polygons(), st.sampled_from([-1e-3, -1e-9, 0.02, 0.2]))
+def test_tangents_meet_in_their_corner(polygon: FloatArray, rho: float):
+    """Both lines through a corner touch the inflated polygon, from outside and half a slack away, and do not agree."""
+    assume(rho > 0 or len(polygon) >= 3)
+    obstacles = ObstacleSet.of([polygon], [rho]).moved(np.array([1.0, -2.0]))
+    normals = obstacles.normals.reshape(-1, 2, 2)
+    np.testing.assert_allclose((normals**2).sum(axis=2), 1)
+    heights = (normals[:, :, None] * (obstacles.vertices - obstacles.corners[:, None, None])).sum(axis=3).max(axis=2)
+    np.testing.assert_allclose(heights, -rho - NUMERIC_SLACK / 2, atol=1e-12)
+    turns = normals[:, 0, 0] * normals[:, 1, 1] - normals[:, 0, 1] * normals[:, 1, 0]
+    assert (turns > 0).all()
+
+
 def test_a_disc_has_corners_all_around():
     """A disc's corners are a regular polygon of 16 sides."""
     corners = circumscribed(np.array([[1.0, 2.0]]), 0.2)

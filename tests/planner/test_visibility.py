@@ -211,6 +211,39 @@ def free_pair(space: ConfigurationSpace, rng: np.random.Generator) -> FloatArray
     return draws[space.points_free(draws)][:2]
 
 
+def plain_distance(space: ConfigurationSpace, start: FloatArray, goal: FloatArray) -> float:
+    """Length of the shortest path over all free edges between corners, none of them left out beforehand."""
+    corners = space.obstacles.corners
+    points = np.vstack([start, goal, corners[space.points_free(corners)]])
+    n = len(points)
+    free = space.segments_free(np.repeat(points, n, axis=0), np.tile(points, (n, 1))).reshape(n, n)
+    lengths = np.where(free, np.hypot(*(points[:, None] - points).T), np.inf)
+    distance, left = np.where(np.arange(n) == 0, 0.0, np.inf), np.ones(n, dtype=bool)
+    while left.any():
+        nearest = np.flatnonzero(left)[distance[left].argmin()]
+        left[nearest] = False
+        distance = np.minimum(distance, distance[nearest] + lengths[nearest])
+    return float(distance[1])
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_no_edge_that_matters_is_left_out(seed: int):
+    """Distances are those of the complete graph, among turned boxes, aligned ones, and gaps without clearance."""
+    rng = np.random.default_rng(seed)
+    cells = np.argwhere(rng.random((7, 7)) < 0.35)
+    aligned = [wall(*(0.8 * cell - 2.4), 0.4, 0.4, 0.1) for cell in cells]
+    walls = [random_walls(rng), aligned, [*aligned, *random_walls(rng)[:3]]][seed % 3]
+    space = disc_space(walls, 1e-3 * (seed % 2))
+    found = 0
+    for _ in range(10):
+        start, goal = free_pair(space, rng)
+        path = ShortestPathTree(space, start).path_to(goal)
+        expected = plain_distance(space, start, goal)
+        assert (np.inf if path is None else length(path)) == pytest.approx(expected, abs=1e-8)
+        found += path is not None
+    assert found > 0
+
+
 @pytest.mark.parametrize("seed", range(30))
 def test_agrees_with_rrt_connect(seed: int):
     """Where RRT-Connect finds a way for a disc 5 mm larger, the tree reaches the goal on no longer a path.
