@@ -2,10 +2,16 @@
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
 
 from converter.plan import Plan, Segment, Status
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import Part
+
+
+# The gate gives the same answer every time and on a machine of any speed.
+settings.register_profile("gate", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("gate")
 
 
 def _box(name: str, x: float, y: float, size: tuple[float, float], edge_radius: float = 0.0) -> Body:

@@ -329,7 +329,7 @@ def test_finished_results_are_kept(run: Run, folder: Path, monkeypatch: pytest.M
 def test_help_says_what_is_true(run: Run):
     """Every command has an example; methods and defaults are those of the packages."""
     commands = re.findall(r"^  (\w+) ", run("--help").stdout.partition("Commands:")[2], re.MULTILINE)
-    assert commands == ["generate", "levels", "convert", "check", "solve", "verify", "render", "study"]
+    assert {"generate", "levels", "convert", "check", "solve", "verify", "render", "study"} <= set(commands)
     for command in commands:
         assert f"Example:  manipuzzle {command}" in run(command, "--help").stdout
     solve, generate = (" ".join(run(command, "--help").stdout.split()) for command in ("solve", "generate"))
