@@ -8,7 +8,6 @@ from converter.plan import Plan, Segment, Status
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import Part
 
-
 # The gate gives the same answer every time and on a machine of any speed.
 settings.register_profile("gate", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("gate")
