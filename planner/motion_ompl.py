@@ -23,12 +23,15 @@ ou.setLogLevel(ou.LogLevel.LOG_NONE)
 _LARGEST_SEED = 2**31 - 1
 
 
-class _StateValidity(ob.StateValidityChecker):  # type: ignore[misc]  # compiled base class without type information
+class StateValidity(ob.StateValidityChecker):  # type: ignore[misc]  # compiled base class without type information
+    """Whether a state is in no obstacle."""
+
     def __init__(self, si: ob.SpaceInformation, space: ConfigurationSpace) -> None:
         super().__init__(si)
         self._obstacles = space.obstacles.arrays
 
     def isValid(self, state: ob.State) -> bool:  # noqa: N802  # name given by OMPL
+        """See OMPL."""
         # A state has no bounds check: unpacking or listing it would crash.
         x, y = state[0], state[1]
         return bool(kernel.segment_free(x, y, x, y, *self._obstacles))
@@ -43,6 +46,26 @@ class _MotionValidity(ob.MotionValidator):  # type: ignore[misc]  # compiled bas
         return bool(kernel.segment_free(a[0], a[1], b[0], b[1], *self._obstacles))
 
 
+def exact_space_information(space: ConfigurationSpace) -> ob.SpaceInformation:
+    """States and motions checked by the exact tests."""
+    si = ob.SpaceInformation(plane(space))
+    si.setStateValidityChecker(StateValidity(si, space))
+    si.setMotionValidator(_MotionValidity(si, space))
+    si.setup()
+    return si
+
+
+def plane(space: ConfigurationSpace) -> ob.RealVectorStateSpace:
+    """The bounds of a space as OMPL's state space."""
+    states = ob.RealVectorStateSpace(2)
+    bounds = ob.RealVectorBounds(2)
+    for axis in range(2):
+        bounds.setLow(axis, float(space.bounds[0, axis]))
+        bounds.setHigh(axis, float(space.bounds[1, axis]))
+    states.setBounds(bounds)
+    return states
+
+
 class OmplPlanner:
     """A planner of OMPL as a back end; see `planner.motion.MotionPlanner`.
 
@@ -50,12 +73,18 @@ class OmplPlanner:
 
     Args:
         name: One of `planner.motion.OMPL_PLANNERS`.
+        space_information: How states and motions are checked: by default exactly.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(
+        self,
+        name: str,
+        space_information: Callable[[ConfigurationSpace], ob.SpaceInformation] = exact_space_information,
+    ) -> None:
         if name not in OMPL_PLANNERS:
             raise ValueError(f"no planner {name!r}; there are {', '.join(OMPL_PLANNERS)}")
         self._planner = getattr(og, name)
+        self._space_information = space_information
 
     def __call__(
         self,
@@ -71,7 +100,7 @@ class OmplPlanner:
         if len(goals) == 0 or not space.point_free(start):
             return MotionResult(None, 0)
         ou.RNG.setSeed(int(rng.integers(1, _LARGEST_SEED)))
-        si = _space_information(space)
+        si = self._space_information(space)
         problem = ob.ProblemDefinition(si)
         problem.addStartState(_state(si, start))
         targets = ob.GoalStates(si)
@@ -99,20 +128,6 @@ class OmplPlanner:
 
 rrt_connect = OmplPlanner("RRTConnect")
 """The planner that [L] uses."""
-
-
-def _space_information(space: ConfigurationSpace) -> ob.SpaceInformation:
-    plane = ob.RealVectorStateSpace(2)
-    bounds = ob.RealVectorBounds(2)
-    for axis in range(2):
-        bounds.setLow(axis, float(space.bounds[0, axis]))
-        bounds.setHigh(axis, float(space.bounds[1, axis]))
-    plane.setBounds(bounds)
-    si = ob.SpaceInformation(plane)
-    si.setStateValidityChecker(_StateValidity(si, space))
-    si.setMotionValidator(_MotionValidity(si, space))
-    si.setup()
-    return si
 
 
 def _state(si: ob.SpaceInformation, point: FloatArray) -> ob.State:
