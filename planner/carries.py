@@ -47,10 +47,12 @@ class Route:
     Attributes:
         carries: What is done.
         steps: How, one step for each carry.
+        configurations: Where everything is before each carry, and after the last.
     """
 
     carries: tuple[Carry, ...]
     steps: tuple[PickPlace, ...]
+    configurations: tuple[Configuration, ...]
 
     @cached_property
     def length(self) -> float:
@@ -61,13 +63,6 @@ class Route:
     def cost(self) -> tuple[int, float]:
         """Pick-places, then length [m]: what is smaller is better."""
         return len(self.carries), self.length
-
-    def configurations(self, problem: Problem) -> list[Configuration]:
-        """The configurations before each carry, and the last one."""
-        found = [problem.initial]
-        for step in self.steps:
-            found.append(step.applied_to(found[-1]))
-        return found
 
 
 def carries_of(problem: Problem, segments: Sequence[Segment]) -> tuple[Carry, ...]:
@@ -131,21 +126,21 @@ class MotionPlanner:
         None if one is impossible, if they leave the goal-object elsewhere than in the goal, or if the route is not
         shorter than `bound` [m].
         """
-        configuration = self._problem.initial
+        configurations = [self._problem.initial]
         # What is left is at least as long as straight lines.
-        rest = _straight_lengths(configuration, carries)
+        rest = _straight_lengths(self._problem.initial, carries)
         length, steps = 0.0, []
         for carry, left in zip(carries, rest, strict=True):
             if length + left >= bound:
                 return None
-            step = self.step(configuration, carry)
+            step = self.step(configurations[-1], carry)
             if step is None:
                 return None
             length += path_length(step.approach) + path_length(step.carry)
             steps.append(step)
-            configuration = step.applied_to(configuration)
-        is_plan = length < bound and self._problem.at_goal(configuration)
-        return Route(tuple(carries), tuple(steps)) if is_plan else None
+            configurations.append(step.applied_to(configurations[-1]))
+        is_plan = length < bound and self._problem.at_goal(configurations[-1])
+        return Route(tuple(carries), tuple(steps), tuple(configurations)) if is_plan else None
 
     def step(self, configuration: Configuration, carry: Carry) -> PickPlace | None:
         """The shortest motions of one carry; None if it is impossible."""

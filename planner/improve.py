@@ -123,7 +123,7 @@ class Improver:
 
     def _shaken(self, best: Route) -> Route | None:
         routes = (self._motions.route(self._moves.shaken(best)) for _ in range(SHAKES))
-        return next(filter(None, routes), None)
+        return min(filter(None, routes), key=lambda route: route.cost, default=None)
 
     def _restarted(self, best: Route) -> Route | None:
         return self._searched(best, 0)
@@ -133,7 +133,7 @@ class Improver:
 
     def _searched(self, best: Route, kept: int) -> Route | None:
         """The first `kept` carries of `best`, and then what a new search finds."""
-        problem = self._problem.starting_at(best.configurations(self._problem)[kept])
+        problem = self._problem.starting_at(best.configurations[kept])
         most = len(best.carries) - kept + SPARE
         found = Search(problem, RESTART, self._rng, self._should_stop, max_pick_places=most).run()
         return self._motions.route((*best.carries[:kept], *carries_of(problem, found.segments)))

@@ -5,29 +5,20 @@ A move only proposes carries; whether they are possible, and how long the way is
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
-from converter.shape import FloatArray
 from planner.carries import Carry, MotionPlanner, Route
-from planner.contact_curve import ContactCurve
-from planner.pick_place import PickPlace, Region
+from planner.improve_draws import Draws
+from planner.pick_place import PickPlace
 from planner.problem import Configuration, Problem
-
-CURVE_SAMPLES = 256
-"""Points of a contact curve among which the place of a grasp is looked up."""
-
-SMALLEST, LARGEST = 1e-3, 1.0
-"""Typical distances of small and of large changes [m]; all scales in between are equally likely."""
 
 REPAIRS = 8
 """Grasps tried for a carry whose own grasp has become impossible."""
 
-GRASP_MARGIN = 1e-6
-"""Distance [m] of grasps from the ends of a free stretch: at the very end rounding decides who sees a collision."""
-
-KEPT_STRETCHES = 512
-"""Configurations whose free grasps are remembered."""
+SHAKES = 30
+"""Grasps and placements tried for a carry that is drawn anew."""
 
 Carries = tuple[Carry, ...]
 
@@ -39,13 +30,11 @@ class Moves:
         self._problem = problem
         self._motions = motions
         self._rng = rng
-        self._curves = [ContactCurve(body, problem.scene.agent.radius) for body in problem.scene.objects]
-        self._goal = Region.of_goal(problem.scene.goal)
-        self._stretches: dict[tuple[int, bytes], FloatArray] = {}
+        self._draws = Draws(problem, rng)
         self._moves: list[Callable[[Route], Carries]] = [
             *2 * [self.other_grasp],
             *2 * [self.other_placement],
-            *2 * [self.other_grasp_and_placement],
+            *2 * [self.placement_between_other_grasps],
             self.placement_on_the_way,
             self.fewer,
             self.other_order,
@@ -58,125 +47,100 @@ class Moves:
     def other_grasp(self, route: Route) -> Carries:
         """One carry in another grasp."""
         i = self._any(route)
-        return _replaced(route, i, self._regrasped(self._before(route, i), route.carries[i]))
+        return _replaced(route.carries, i, self._draws.grasp(route.configurations[i], route.carries[i]))
 
     def other_placement(self, route: Route) -> Carries:
         """One object placed somewhere near."""
         i = self._any(route)
-        return _replaced(route, i, self._moved(route, i))
+        return _replaced(route.carries, i, self._placed_near(route, i))
 
-    def other_grasp_and_placement(self, route: Route) -> Carries:
-        """Both at once, for where neither helps alone."""
+    def placement_between_other_grasps(self, route: Route) -> Carries:
+        """One object placed somewhere near, and grasped in another way before, at its next carry, or both."""
         i = self._any(route)
-        return _replaced(route, i, self._regrasped(self._before(route, i), self._moved(route, i)))
+        j = _next_of_object(route.carries, i)
+        carry = self._placed_near(route, i)
+        which = self._rng.integers(3)
+        if which != 0 or j is None:
+            carry = self._draws.grasp(route.configurations[i], carry)
+        carries = _replaced(route.carries, i, carry)
+        if which != 1 and j is not None:
+            configuration = route.configurations[j].with_object(carry.index, carry.placement)
+            carries = _replaced(carries, j, self._draws.grasp(configuration, carries[j]))
+        return carries
 
     def placement_on_the_way(self, route: Route) -> Carries:
         """One object placed earlier on its way, or further along its next one."""
         i = self._any(route)
-        next_one = _next_of_object(route.carries, i)
-        j = i if next_one is None or self._rng.random() < 0.5 else next_one
-        placement = self._point_on(route.steps[j].carry) - route.carries[j].grasp
-        return _replaced(route, i, replace(route.carries[i], placement=placement))
+        following = _next_of_object(route.carries, i)
+        j = i if following is None or self._rng.random() < 0.5 else following
+        placement = self._draws.point_on(route.steps[j].carry) - route.carries[j].grasp
+        return _replaced(route.carries, i, replace(route.carries[i], placement=placement))
 
     def fewer(self, route: Route) -> Carries:
-        """Without one or two of the carries; grasps that this makes impossible are replaced."""
+        """Without one or two of the carries, half of the others to placements near."""
         dropped = self._rng.permutation(len(route.carries))[: self._rng.integers(1, 3)]
-        carries = [
-            carry if self._rng.random() < 0.5 else self._moved(route, i)
+        return self._repaired(
+            carry if self._rng.random() < 0.5 else self._placed_near(route, i)
             for i, carry in enumerate(route.carries)
             if i not in dropped
-        ]
-        return self._repaired(carries)
+        )
 
     def other_order(self, route: Route) -> Carries:
-        """Two carries swapped; grasps that this makes impossible are replaced."""
-        carries = list(route.carries)
-        i, j = self._rng.integers(len(carries), size=2)
-        carries[i], carries[j] = carries[j], carries[i]
-        return self._repaired(carries)
+        """Two carries swapped."""
+        i, j = self._any(route), self._any(route)
+        swapped = _replaced(_replaced(route.carries, i, route.carries[j]), j, route.carries[i])
+        return self._repaired(swapped)
 
     def shaken(self, route: Route) -> Carries:
-        """Any of the carries in other grasps and to other placements, to leave a local optimum."""
-        carries = list(route.carries)
-        for i in range(len(carries)):
-            if self._rng.random() < 0.5:
-                carries[i] = self._regrasped(self._before(route, i), self._moved(route, i))
-        return self._repaired(carries)
-
-    def _repaired(self, carries: Iterable[Carry]) -> Carries:
-        """The carries, up to the first for which none of some grasps is possible."""
-        configuration, kept = self._problem.initial, list[Carry]()
-        for carry in carries:
-            step = self._motions.step(configuration, carry) or self._step_in_another_grasp(configuration, carry)
+        """The same objects in other grasps to other placements, all of them from a random carry on."""
+        kept = self._any(route)
+        configuration, carries = route.configurations[kept], list(route.carries[:kept])
+        for i in range(kept, len(route.carries)):
+            step = self._first_possible(configuration, self._drawn_anew(configuration, route, i))
             if step is None:
                 break
-            kept.append(replace(carry, grasp=step.carry[0] - configuration.objects[carry.index]))
+            carries.append(_carry_of(configuration, step))
+            configuration = step.applied_to(configuration)
+        return tuple(carries)
+
+    def _drawn_anew(self, configuration: Configuration, route: Route, i: int) -> Iterable[Carry]:
+        carry, is_final = route.carries[i], self._is_final(route, i)
+        placed = (self._draws.new_placement(configuration, carry, is_final=is_final) for _ in range(SHAKES))
+        return (self._draws.grasp(configuration, carry) for carry in placed)
+
+    def _repaired(self, carries: Iterable[Carry]) -> Carries:
+        """The carries, those that are impossible in another grasp; up to the first that is impossible in all tried."""
+        configuration, kept = self._problem.initial, list[Carry]()
+        for carry in carries:
+            others = (self._draws.grasp(configuration, carry) for _ in range(REPAIRS))
+            step = self._first_possible(configuration, chain([carry], others))
+            if step is None:
+                break
+            kept.append(_carry_of(configuration, step))
             configuration = step.applied_to(configuration)
         return tuple(kept)
 
-    def _step_in_another_grasp(self, configuration: Configuration, carry: Carry) -> PickPlace | None:
-        others = (self._regrasped(configuration, carry) for _ in range(REPAIRS))
-        return next(filter(None, (self._motions.step(configuration, other) for other in others)), None)
+    def _first_possible(self, configuration: Configuration, carries: Iterable[Carry]) -> PickPlace | None:
+        return next(filter(None, (self._motions.step(configuration, carry) for carry in carries)), None)
 
-    def _regrasped(self, configuration: Configuration, carry: Carry) -> Carry:
-        """The carry in another free grasp, a near one or any."""
-        curve, stretches = self._curves[carry.index], self._free_stretches(configuration, carry.index)
-        if len(stretches) == 0:
-            return carry
-        if self._rng.random() < 0.5:
-            samples = np.linspace(0.0, curve.length, CURVE_SAMPLES)
-            here = samples[((curve.at(samples) - carry.grasp) ** 2).sum(axis=1).argmin()]
-            wanted = (here + self._scale() * self._rng.standard_normal()) % curve.length
-            nearest = np.clip(wanted, *stretches.T)
-            arc_length = nearest[np.abs(nearest - wanted).argmin()]
-        else:
-            # As many free stretches are short but matter, each is as likely as all by their lengths.
-            lengths = stretches[:, 1] - stretches[:, 0]
-            weights = lengths if self._rng.random() < 0.5 and lengths.sum() > 0 else np.ones(len(lengths))
-            arc_length = self._rng.uniform(*stretches[self._rng.choice(len(weights), p=weights / weights.sum())])
-        return replace(carry, grasp=curve.at(np.array([arc_length]))[0])
+    def _placed_near(self, route: Route, i: int) -> Carry:
+        is_final = self._is_final(route, i)
+        return self._draws.near_placement(route.configurations[i], route.carries[i], is_final=is_final)
 
-    def _free_stretches(self, configuration: Configuration, index: int) -> FloatArray:
-        key = index, configuration.objects.tobytes()
-        if key not in self._stretches:
-            if len(self._stretches) >= KEPT_STRETCHES:
-                self._stretches.clear()
-            obstacles = self._problem.agent_space(configuration, held=index).obstacles
-            stretches = self._curves[index].free_stretches(obstacles.moved(-configuration.objects[index]))
-            margin = np.minimum(GRASP_MARGIN, (stretches[:, 1] - stretches[:, 0]) / 2)
-            self._stretches[key] = stretches + margin[:, None] * np.array([1.0, -1.0])
-        return self._stretches[key]
-
-    def _moved(self, route: Route, i: int) -> Carry:
-        """Carry `i` to a placement near its own; where the goal-object ends stays in the goal."""
-        carry = route.carries[i]
-        by = self._scale() * self._rng.standard_normal(2)
-        if self._rng.random() < 0.5:
-            # Along a corridor without clearance no other direction is free.
-            by[self._rng.integers(2)] = 0.0
-        placement = carry.placement + by
-        if carry.index == self._problem.goal_index and _next_of_object(route.carries, i) is None:
-            placement = np.clip(placement, self._goal.lower, self._goal.upper)
-        return replace(carry, placement=placement)
-
-    def _scale(self) -> float:
-        return float(np.exp(self._rng.uniform(np.log(SMALLEST), np.log(LARGEST))))
-
-    def _point_on(self, path: FloatArray) -> FloatArray:
-        """A uniformly random point (2,) of the polyline `path` (n, 2)."""
-        lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-        at = self._rng.uniform(0.0, lengths[-1])
-        return np.array([np.interp(at, lengths, coordinate) for coordinate in path.T])
+    def _is_final(self, route: Route, i: int) -> bool:
+        """Whether carry `i` is the one that has to end in the goal."""
+        return route.carries[i].index == self._problem.goal_index and _next_of_object(route.carries, i) is None
 
     def _any(self, route: Route) -> int:
         return int(self._rng.integers(len(route.carries)))
 
-    def _before(self, route: Route, i: int) -> Configuration:
-        return route.configurations(self._problem)[i]
+
+def _replaced(carries: Carries, i: int, carry: Carry) -> Carries:
+    return (*carries[:i], carry, *carries[i + 1 :])
 
 
-def _replaced(route: Route, i: int, carry: Carry) -> Carries:
-    return (*route.carries[:i], carry, *route.carries[i + 1 :])
+def _carry_of(configuration: Configuration, step: PickPlace) -> Carry:
+    return Carry(step.index, step.carry[0] - configuration.objects[step.index], step.placement)
 
 
 def _next_of_object(carries: Carries, i: int) -> int | None:
