@@ -107,6 +107,30 @@ def test_solve_writes_a_plan_that_verify_accepts(run: Run, folder: Path):
     assert (verified.exit_code, document(verified)) == (0, {"valid": True, "violations": []})
 
 
+def test_solve_improves_plans(run: Run, folder: Path):
+    """The plan is as good or better, still valid, and says how long it was improved."""
+    (first,) = document(run("solve", "room.yaml", "--out", "plans", "--json"))["results"]
+    improved = run("solve", "room.yaml", "--out", "improved", "--improve", "0.2", "--json")
+    assert improved.exit_code == 0
+    (result,) = document(improved)["results"]
+    assert (result["pick_places"], result["path_length_m"]) < (first["pick_places"], first["path_length_m"])
+    plan = read_plan(folder / result["plan"])
+    assert plan.settings["improve"] == 0.2
+    assert plan.counters["improve_time_s"] >= 0.2
+
+
+def test_push_needs_a_level(run: Run, folder: Path):
+    """Method Push solves converted levels, and refuses other scenes before any work."""
+    run("convert", "levels.txt", "--out", "scenes")
+    solved = run("solve", "scenes/corridor.yaml", "--method", "Push", "--out", "plans", "--json")
+    (result,) = document(solved)["results"]
+    assert (result["verified"], result["pick_places"]) == (True, 1)
+    refused = run("solve", "room.yaml", "--method", "Push", "--out", "o")
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert refused.stderr.startswith("error: room.yaml: method Push needs a scene converted from a level")
+    assert not (folder / "o").exists()
+
+
 def test_what_is_not_solved_has_no_plan(run: Run, folder: Path):
     """A goal behind walls: exit status 1, no plan, nothing verified, no file."""
     box = "{name: %s, position: [%s, %s, 0.1], size: [%s, %s, 0.2]}"
@@ -279,6 +303,7 @@ BAD_INPUT = {
     "negative seed": (["solve", "room.yaml", "--out", "o", "--seed", "-1"], "Invalid value for '--seed'"),
     "no time": (["solve", "room.yaml", "--out", "o", "--time-limit", "0"], "time limit: found 0.0, must be a finite number of seconds > 0"),
     "infinite time": (["solve", "room.yaml", "--out", "o", "--time-limit", "inf"], "Invalid value for '--time-limit'"),
+    "negative time": (["solve", "room.yaml", "--out", "o", "--improve", "-1"], "Invalid value for '--improve'"),
     "tolerance that is no number": (["check", "room.yaml", "--tolerance", "nan"], "Invalid value for '--tolerance'"),
     "more targets than crates": (["generate", "--out", "o", "--targets", "3"], "options: 2 crates cannot cover 3"),
     "one name twice": (["solve", "room.yaml", "other/room.yaml", "--out", "o"], "scenes: two inputs would be written as 'room'"),

@@ -75,6 +75,14 @@ def test_a_specification_becomes_a_study(spec: Path):
     assert study.size == len(list(study.trials())) == 8
 
 
+def test_improvement_has_its_own_time(spec: Path):
+    """It comes on top of the time limit, also where trials are killed."""
+    spec.write_text(f"{SPEC}time_limit: 10\nimprove: 5\n")
+    study = read_study(spec)
+    assert study.settings == Settings(time_limit=10, improve=5)
+    assert study.limits == Limits(seconds=30.0)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -88,6 +96,7 @@ def test_a_specification_becomes_a_study(spec: Path):
         ("scenes/*.yaml", "scenes/*.yaml, scenes/one.yaml", "scenes: two inputs would be written as 'one'"),
         ("seeds: 2", "seeds: 2\nworkers: 3", "workers: Extra inputs"),
         ("seeds: 2", "seeds: 2\nhard_limit: 0.5", "hard_limit: .*greater than or equal to 1"),
+        ("seeds: 2", "seeds: 2\nimprove: -1", "improve: .*greater than or equal to 0"),
         ("name: test", "name: [", "line"),
     ],
 )

@@ -35,6 +35,17 @@ def test_a_seed_fixes_the_plan(small_room: Scene):
     assert without_times(run_trial(small_room, Settings(), 3).plan) == without_times(first)
 
 
+def test_improvement_is_repeatable(small_room: Scene):
+    """With a number of rounds a seed fixes the improved plan; all that differs are times."""
+    settings = Settings(improve=1e6, improve_rounds=2)
+    first, second = (run_trial(small_room, settings, 3) for _ in range(2))
+    assert first.solved
+    times = {"subgoal_time_s": 0.0, "improve_time_s": 0.0}
+    plans = [replace(o.plan, counters={**o.plan.counters, **times}) for o in (first, second)]
+    assert without_times(plans[0]) == without_times(plans[1])
+    assert plans[0].path_length < run_trial(small_room, Settings(), 3).plan.path_length
+
+
 def test_a_wrong_plan_does_not_count(small_room: Scene, small_plan: Plan, monkeypatch: pytest.MonkeyPatch):
     """A plan that claims to solve the scene but fails verification is not solved."""
     through_the_wall = (
