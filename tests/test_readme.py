@@ -11,6 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+PYTHON = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NOT_RUN = ("make", "git clone", "cd ")
 """Beginnings of lines that are not run here: they set up what runs the tests."""
 
@@ -49,3 +50,12 @@ def test_commands_run_as_shown(tmp_path: Path):
         )
         assert result.returncode in {0, 1}, f"{command}\n{result.stderr}"
         assert "Traceback" not in result.stderr, command
+
+
+def test_python_examples_run(monkeypatch: pytest.MonkeyPatch):
+    """Every Python block runs as it stands in the project's folder; its assertions hold."""
+    monkeypatch.chdir(ROOT)
+    blocks = PYTHON.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    assert blocks
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), {})  # noqa: S102  # our own README
