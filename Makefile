@@ -6,11 +6,12 @@ INSTALLED := .venv/.installed
 COMPILE := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-header --group dev
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lock
+.PHONY: help setup demo bench test lock
 
 help:
 	@echo "make setup  install the locked dependencies and manipuzzle itself into .venv"
 	@echo "make demo   generate, convert, check, solve, verify and draw levels and puzzles into out/"
+	@echo "make bench  time the parts, with peers beside them"
 	@echo "make test   lint, types and tests: what CI runs"
 	@echo "make lock   resolve the dependencies anew into the two lock files"
 
@@ -29,6 +30,9 @@ $(INSTALLED): pyproject.toml requirements.lock | $(BIN)/uv
 
 demo: setup
 	$(BIN)/python -m evaluate.demo --out out
+
+bench: setup
+	$(BIN)/manipuzzle bench
 
 test: setup
 	$(BIN)/ruff check

@@ -340,6 +340,21 @@ def study(
     _exit(run(spec, out, workers, as_json=json))
 
 
+@app.command(short_help="Time the parts, with peers beside them.")
+def bench(
+    *,
+    quick: Annotated[bool, typer.Option("--quick", help="A few seconds; the figures mean little.")] = False,
+    json: Json = False,
+) -> None:
+    """Time motions, grasps, collision tests and solving, each beside a peer timed in the same run; about a minute.
+
+    Example:  manipuzzle bench
+    """
+    from evaluate.commands.bench import run
+
+    _exit(run(quick=quick, as_json=json))
+
+
 def _exit(all_well: bool) -> None:  # noqa: FBT001 - the one thing that it is about
     if not all_well:
         raise typer.Exit(NEGATIVE)

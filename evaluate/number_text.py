@@ -11,3 +11,11 @@ def three_digits(value: float) -> str:
         return "0"
     decimals = min(max(2 - math.floor(math.log10(abs(value))), 0), MAX_DECIMALS)
     return f"{value:.{decimals}f}"
+
+
+def duration(seconds: float) -> str:
+    """A time with three significant digits in a unit that suits it: `310 ns`, `12.3 ms`, `1.50 s`."""
+    for unit, factor in (("ns", 1e9), ("us", 1e6), ("ms", 1e3)):
+        if seconds * factor < 1000:
+            return f"{three_digits(seconds * factor)} {unit}"
+    return f"{three_digits(seconds)} s"

@@ -30,11 +30,11 @@ HOMES = {
         "planner/subgoals_bottleneck.py",
         "planner/visibility.py",
     },
-    "ompl": {"planner/motion_ompl.py"},
+    "ompl": {"evaluate/bench_peers.py", "planner/motion_ompl.py"},
     "pymunk": {"converter/preview.py"},
     "rich": {"evaluate/output.py"},
     "scipy": {"planner/subgoals_bottleneck.py"},
-    "shapely": {"planner/penetration.py"},
+    "shapely": {"evaluate/bench_peers.py", "planner/penetration.py"},
     "typer": {"evaluate/cli.py"},
     "yaml": {"converter/formats/yaml_text.py"},
 }
