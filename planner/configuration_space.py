@@ -58,9 +58,11 @@ class ObstacleSet:
         )
 
     @classmethod
-    def union(cls, sets: Iterable["ObstacleSet"]) -> Self:
+    def union(cls, sets: Iterable[Self]) -> Self:
         """All obstacles of `sets`, none if there are no sets."""
-        members: list[ObstacleSet] = list(sets) or [cls.of([], [])]
+        members = [s for s in sets if len(s)] or [cls.of([], [])]
+        if len(members) == 1:
+            return members[0]
         offsets = np.cumsum([0, *(len(s.vertices) for s in members)])
         first = [s.first[:-1] + offset for s, offset in zip(members, offsets[:-1], strict=True)]
         return cls(
