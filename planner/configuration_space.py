@@ -20,6 +20,9 @@ from planner.minkowski import minkowski_sum
 _ARC_STEP = np.pi / 8
 """Angle between the tangents that replace an arc: the corners stand off by at most 2 % of the radius."""
 
+_MARGIN = 1e-6
+"""What lies less deep [m] behind the tangents of a corner may be free by rounding or by a numeric slack."""
+
 
 @dataclass(frozen=True, eq=False)
 class ObstacleSet:
@@ -31,7 +34,8 @@ class ObstacleSet:
         rho: (K,) radii [m]; a negative one shrinks its polygon.
         boxes: (K, 4) [m] x_min, y_min, x_max, y_max of the inflated polygons.
         corners: (C, 2) [m] where a shortest path may turn: vertices of tight polygons around the obstacles.
-        normals: (C, 4) the x and y of the outward unit normals of the two tangents that meet in each corner.
+        normals: (C, 4) [1/m] the x and y of the outward normals of the two tangents that meet in each corner, so long
+            that a line which ends further than 1 behind both has entered the obstacle.
     """
 
     vertices: FloatArray
@@ -158,10 +162,15 @@ def circumscribed(polygon: FloatArray, rho: float) -> FloatArray:
 
 
 def _tangent_normals(polygon: FloatArray, rho: float) -> FloatArray:
-    """For each corner of `circumscribed` the x and y of the normals of the edge before and the edge behind (C, 4)."""
+    """For each corner of `circumscribed` the x and y of the normals of the edge before and the edge behind (C, 4).
+
+    Behind both tangents there is free space still, between corner and arc; a grasp may lie there. It is nowhere deeper
+    behind both than in the middle of the arc, rho (1 - cos(half the turn)).
+    """
     _, angles, halves = _corner_angles(polygon, rho)
     before, behind = angles - halves, angles + halves
-    return np.column_stack([np.cos(before), np.sin(before), np.cos(behind), np.sin(behind)])
+    deepest = max(rho, 0.0) * (1 - np.cos(halves)) + _MARGIN
+    return np.column_stack([np.cos(before), np.sin(before), np.cos(behind), np.sin(behind)]) / deepest[:, None]
 
 
 def _corner_angles(polygon: FloatArray, rho: float) -> tuple[FloatArray, FloatArray, FloatArray]:

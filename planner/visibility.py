@@ -28,16 +28,13 @@ from planner.configuration_space import ConfigurationSpace
 from planner.kernel import BoolArray, IntArray, segment_free
 from planner.motion import MotionResult
 
-_DEPTH = 1e-6
-"""A line enters an obstacle at a corner if it ends deeper than this [m] behind both tangents; numeric slacks are less."""
-
 
 @njit(cache=True)
 def _enters(normals: FloatArray, corner: int, dx: float, dy: float) -> bool:
-    """Whether the line from a corner by (dx, dy) begins inside the corner's own obstacle."""
+    """Whether the line from a corner by (dx, dy) surely enters the corner's own obstacle."""
     before = normals[corner, 0] * dx + normals[corner, 1] * dy
     behind = normals[corner, 2] * dx + normals[corner, 3] * dy
-    return bool(before < -_DEPTH and behind < -_DEPTH)
+    return bool(before < -1.0 and behind < -1.0)
 
 
 @njit(cache=True)

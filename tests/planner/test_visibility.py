@@ -321,3 +321,15 @@ def test_nearest_point_of_a_start_that_leads_nowhere():
     """In an empty space the tree is its start."""
     tree = ShortestPathTree(disc_space([]), np.array([1.0, 1.0]))
     np.testing.assert_array_equal(tree.nearest_points(vectors([0, 0], [2, 2])), vectors([1, 1], [1, 1]))
+
+
+@pytest.mark.parametrize("angle", np.linspace(0.0, 2 * np.pi, 48, endpoint=False))
+def test_places_that_touch_an_arc_are_reached(angle: float):
+    """Also between arc and tangents, from where only the corner of these tangents is seen, as start and as end."""
+    space = ConfigurationSpace(ObstacleSet.of([np.zeros((1, 2))], [0.3]), BOUNDS)
+    touching = 0.3 * (1 + 1e-9) * np.array([np.cos(angle), np.sin(angle)])
+    for far in vectors([1.5, 0.1], [-1.5, -0.2]):
+        path = ShortestPathTree(space, far).path_to(touching)
+        assert path is not None
+        assert space.path_free(path)
+        assert length(ShortestPathTree(space, touching).path_to(far)) == pytest.approx(length(path))
