@@ -34,7 +34,7 @@ RESTART = replace(PRESETS["fast"], method="Rnd+FPR", max_expansions=50)
 SPARE = 2
 """Pick-places that the plan of a new search may have more than the best route; local search drops them."""
 
-MOVES, PATIENCE = 200, 40
+MOVES, PATIENCE = 60, 20
 """The most moves of one local search, and how many in a row without success end it."""
 
 SHAKES = 10

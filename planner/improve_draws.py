@@ -97,15 +97,18 @@ class Draws:
         space = self._problem.object_space(configuration, index)
         if self._coin() or not space.point_free(placement):
             return placement
-        direction = np.roll(np.array([1.0 if self._coin() else -1.0, 0.0]), self._rng.integers(2))
-        free, blocked = 0.0, float(np.ptp(self._problem.scene.bounds, axis=0).max())
-        while blocked - free > CONTACT_GAP:
+        axis = self._rng.integers(2)
+        free, blocked = placement.copy(), placement.copy()
+        blocked[axis] = space.bounds[self._rng.integers(2), axis]
+        if space.segment_free(placement, blocked):
+            return blocked
+        while abs(blocked[axis] - free[axis]) > CONTACT_GAP:
             middle = (free + blocked) / 2
-            if space.path_free(np.array([placement, placement + middle * direction])):
+            if space.segment_free(placement, middle):
                 free = middle
             else:
                 blocked = middle
-        return np.asarray(placement + free * direction)
+        return free
 
     def _shift(self) -> FloatArray:
         by = self._scale() * self._rng.standard_normal(2)
