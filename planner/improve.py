@@ -53,7 +53,7 @@ def improve(
 
     Args:
         scene: The puzzle.
-        first: A plan for it; results without a plan come back as they are.
+        first: A plan for it; what is no valid plan comes back as it is.
         settings: Budgets.
         rng: Source of all randomness.
         should_stop: Asked between moves; True ends the improvement.
@@ -62,9 +62,9 @@ def improve(
         `first` with other motions if those are better and pass verification. Its counters tell `improve_time_s` and
         what was tried; everything else stays, `time_s` too.
     """
-    if not first.subgoals:
-        return first
     started = time.perf_counter()
+    if not first.subgoals or verify(scene, first.to_plan(scene, settings, 0)):
+        return first
     improver = Improver(scene, settings, rng, lambda: should_stop() or time.perf_counter() - started > settings.improve)
     best = improver.run(first)
     counters = {**first.counters, **improver.counters, "improve_time_s": time.perf_counter() - started}

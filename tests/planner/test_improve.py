@@ -108,19 +108,17 @@ def test_a_seed_fixes_the_improvement():
 
 def test_what_verification_refuses_does_not_count(monkeypatch: pytest.MonkeyPatch):
     """Then the first plan stays, to the last way-point."""
-    monkeypatch.setattr(improve_module, "verify", lambda *_: ["a violation"])
     first = detour()
+    monkeypatch.setattr(improve_module, "verify", lambda _, plan: plan.segments != first.segments)
     best = improve(OPEN, first, rounds(2), np.random.default_rng(0))
     assert (best.segments, best.subgoals) == (first.segments, first.subgoals)
 
 
-def test_plans_that_cannot_be_retraced_stay():
-    """A plan through an obstacle is not made worse, and no plan is not made one."""
-    first = detour()
-    blocked = replace(OPEN, walls=(wall(1.1, 0.0, 0.1, 3.9),))
-    assert improve(blocked, first, rounds(2), np.random.default_rng(0)).segments == first.segments
-    failed = PlanResult(Status.EXHAUSTED, 0.1)
-    assert improve(OPEN, failed, rounds(2), np.random.default_rng(0)) is failed
+def test_what_is_no_valid_plan_stays():
+    """Neither a plan through a wall nor a failure becomes a success."""
+    blocked = replace(OPEN, walls=(wall(0.1, 0.0, 0.1, 1.0),))
+    for first in (detour(), PlanResult(Status.EXHAUSTED, 0.1)):
+        assert improve(blocked, first, rounds(2), np.random.default_rng(0)) is first
 
 
 def test_improvement_stops_when_told():
