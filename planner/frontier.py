@@ -1,7 +1,7 @@
 """The configurations that the search knows: which to expand next, and which to refuse ([L], section IV)."""
 
 import heapq
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass
 from itertools import count
 
@@ -49,14 +49,17 @@ class Node:
 class Frontier:
     """Nodes in the order of their expansion.
 
-    A node that has been expanded comes back after all that have not. Among equals the best score goes first with
-    prioritised selection (P), otherwise the oldest.
+    A node that has been expanded comes back after all that have not. With prioritised selection (P) the best score
+    goes first; among equal scores, which [L] leaves open, the node in whose surroundings the fewest nodes have been
+    expanded, then the oldest. Without P it is first in, first out.
     """
 
     def __init__(self, settings: Settings) -> None:
         self._prioritised = "P" in settings.letters
         self._expansions = settings.expansions
-        self._heap: list[tuple[int, float, int, Node]] = []
+        self._cell = settings.novelty_cell
+        self._expanded: Counter[bytes] = Counter()
+        self._heap: list[tuple[int, float, int, int, Node]] = []
         self._order = count()
 
     def __len__(self) -> int:
@@ -66,13 +69,25 @@ class Frontier:
         """Enters a node, unless it has been expanded often enough."""
         if node.expansions < self._expansions:
             priority = -node.score if self._prioritised else 0.0
-            heapq.heappush(self._heap, (node.expansions, priority, next(self._order), node))
+            heapq.heappush(self._heap, (node.expansions, priority, self._crowd(node), next(self._order), node))
 
     def select_node(self) -> Node:
         """Takes the next node out and counts its expansion."""
-        node = heapq.heappop(self._heap)[-1]
+        expansions, priority, crowd, order, node = heapq.heappop(self._heap)
+        # Crowds only grow: a node whose crowd is still what it was when it was entered has the smallest.
+        while (grown := self._crowd(node)) > crowd:
+            entry = (expansions, priority, grown, order, node)
+            expansions, priority, crowd, order, node = heapq.heappushpop(self._heap, entry)
         node.expansions += 1
+        self._expanded[self._surroundings(node)] += 1
         return node
+
+    def _crowd(self, node: Node) -> int:
+        return self._expanded[self._surroundings(node)] if self._prioritised else 0
+
+    def _surroundings(self, node: Node) -> bytes:
+        places = np.vstack([node.configuration.objects, node.configuration.agent])
+        return _cells(places, self._cell)
 
 
 class Rejection:
@@ -93,7 +108,7 @@ class Rejection:
 
     def accepts(self, configuration: Configuration) -> bool:
         """Whether fewer than the allowed number of equal configurations have been accepted; counts this one."""
-        key = np.floor(configuration.objects / self._cell).astype(np.int64).tobytes()
+        key = _cells(configuration.objects, self._cell)
         agents = self._accepted[key]
         if self._active and self._number_of_equals(configuration, agents) >= self._limit:
             return False
@@ -105,3 +120,8 @@ class Rejection:
             return len(agents)
         tree = ShortestPathTree(self._problem.agent_space(configuration), configuration.agent)
         return int(tree.reaches(np.array(agents)).sum())
+
+
+def _cells(places: FloatArray, edge: float) -> bytes:
+    """The square cells in which `places` (n, 2) [m] lie, as a key."""
+    return np.floor(places / edge).astype(np.int64).tobytes()

@@ -46,6 +46,15 @@ def test_the_best_goes_first_and_of_equals_the_oldest(values: list[float]):
     assert not frontier
 
 
+def test_of_equals_the_least_crowded_goes_first():
+    """Among equal scores nodes from other surroundings go before those near an expanded one, however old they are."""
+    near, also_near, elsewhere = (
+        Node(Configuration(np.array([0.05, x]), vectors([0.0, 0.0])), score=5.0) for x in (0.05, 0.1, 0.9)
+    )
+    frontier = frontier_of([near, also_near, elsewhere], PRIORITISED)
+    assert [frontier.select_node() for _ in range(3)] == [near, elsewhere, also_near]
+
+
 @given(scores)
 def test_without_priority_the_oldest_goes_first(values: list[float]):
     """Without P scores do not count: first in, first out."""
@@ -99,7 +108,7 @@ def test_steps_lead_from_the_start():
 def rejection(**changes: Any) -> Rejection:
     """Rejection in an empty room by object positions alone, unless changed."""
     objects = body("obj", 1, 1), body("other", -1, -1)
-    settings = {"method": "Rnd+R", "rejection_by_access": False, **changes}
+    settings = {"method": "Rnd+R", "rejection_by_access": False, "equal_configurations": 2, **changes}
     return Rejection(Problem(room(objects=objects)), Settings(**settings))
 
 
@@ -139,7 +148,7 @@ def test_agents_on_either_side_of_an_object_are_told_apart():
     """By access, configurations are equal only if the agent can drive from one to the other."""
     corridor = [wall(x, sign * 1.2, 1, 2) for sign in (1, -1) for x in (-1.5, -0.5, 0.5, 1.5)]
     problem = Problem(room(*corridor, objects=(body("obj", 0, 0),), agent=(-1.5, 0)))
-    rej = Rejection(problem, Settings(method="Rnd+R"))
+    rej = Rejection(problem, Settings(method="Rnd+R", equal_configurations=2))
     left, right = (
         [Configuration(np.array([x, 0.0]), vectors([0, 0])) for x in side] for side in ([-1, -1.5, -0.5], [1, 0.5, 1.5])
     )

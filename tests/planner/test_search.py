@@ -149,7 +149,9 @@ def test_rejection_bounds_equal_configurations(monkeypatch: pytest.MonkeyPatch, 
     """With R at most two configurations have equal object positions, however often they come up; without R more do."""
     spots = [np.array([-1.0 - 0.2 * k, 0.0]) for k in range(3)]
     run, result = scripted(
-        monkeypatch, Settings(method=method, max_expansions=20), placements=lambda call: spots[call % 3]
+        monkeypatch,
+        Settings(method=method, max_expansions=20, equal_configurations=2),
+        placements=lambda call: spots[call % 3],
     )
     cells = Counter(np.floor(node.configuration.objects / 0.1).tobytes() for node in run.nodes)
     if "R" in method.partition("+")[2]:

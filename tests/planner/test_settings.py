@@ -65,10 +65,12 @@ def test_unknown_presets_are_refused():
         settings_for("fast", method="none")
 
 
-def test_both_presets_limit_repeats_as_published():
-    """Two equal configurations, two expansions of one."""
-    for settings in PRESETS.values():
-        assert (settings.equal_configurations, settings.expansions) == (2, 2)
+def test_the_faithful_preset_is_as_published():
+    """Two equal configurations by object positions alone, two expansions of one, candidates from the whole room."""
+    faithful = PRESETS["faithful"]
+    assert (faithful.equal_configurations, faithful.expansions, faithful.near_share) == (2, 2, 0.0)
+    assert not faithful.rejection_by_access
+    assert PRESETS["fast"].expansions == 2
 
 
 def test_the_document_holds_every_field():

@@ -134,16 +134,16 @@ def test_random_candidates_are_free_and_everywhere(index: int):
     assert np.abs(found).max() <= 2
 
 
-def test_random_candidates_at_every_scale():
-    """Each of six squares around the object, the room and ever smaller ones, has its share of the candidates."""
+def test_near_candidates_come_at_every_scale():
+    """Of five squares around the object, each half as wide as the one before, each has its share."""
     here = PROBLEM.initial.objects[0]
-    settings = Settings(candidate_scales=6)
-    found = RandomSubgoals(PROBLEM, settings).candidates(PROBLEM.initial, 0, 3000, np.random.default_rng(0))
+    generator = RandomSubgoals(PROBLEM, Settings(near_share=1.0))
+    found = generator.candidates(PROBLEM.initial, 0, 3000, np.random.default_rng(0))
     distances = np.abs(found - here).max(axis=1)
-    shares = [float((distances <= 2 / 2**scale).mean()) for scale in range(6)]
-    assert shares == sorted(shares, reverse=True)
-    assert all(share > (5 - scale + 0.5) / 6 for scale, share in enumerate(shares))
-    assert shares[0] < 1
+    assert distances.max() <= 1
+    assert np.abs(np.corrcoef((found - here).T)[0, 1]) < 0.2
+    for scale in range(1, 6):
+        assert (distances <= 2 / 2**scale).mean() > (5.5 - scale) / 5
 
 
 def test_an_object_that_fits_nowhere_else_has_no_candidates():
