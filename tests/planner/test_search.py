@@ -332,6 +332,12 @@ def test_puzzles_are_solved(puzzle: str, seed: int):
     verified(read_scene(PUZZLES / f"{puzzle}.yaml"), settings_for("fast"), seed)
 
 
+@pytest.mark.slow
+def test_maze_is_solved():
+    """The hardest puzzle takes a dozen regrasps of centimetres, within two minutes."""
+    verified(read_scene(PUZZLES / "maze.yaml"), settings_for("fast", time_limit=120), 0)
+
+
 @pytest.mark.parametrize("puzzle", ["cube-free", "corner", "wall-easy"])
 def test_the_faithful_preset_solves_the_easy_puzzles(puzzle: str):
     """RRT-Connect and nonlinear programs find valid plans too."""
