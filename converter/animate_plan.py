@@ -9,6 +9,7 @@ import numpy as np
 
 from converter.drawing import Drawing, Shape
 from converter.plan import Plan
+from converter.polyline import path_length
 from converter.raster import Image, paint, paint_over
 from converter.render_scene import agent_shape, body_shape, object_color, room_drawing
 from converter.replay import Step, points_along, replay, start_positions
@@ -117,5 +118,5 @@ def _moving(scene: Scene, step: Step, position: FloatArray, unit: float, theme: 
 
 def _sampled(path: FloatArray, count: int) -> FloatArray:
     """(count, 2) [m]: equally spaced points of `path`, its end the last of them and its start left out."""
-    length = float(np.hypot(*np.diff(path, axis=0).T).sum())
+    length = path_length(path)
     return points_along(path, np.linspace(0.0, length, count + 1)[1:])

@@ -9,7 +9,6 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,6 +17,7 @@ from pydantic import Field
 
 from converter.formats import scene_yaml
 from converter.formats.body_document import Number
+from converter.polyline import path_length
 from converter.scene import Scene
 from converter.shape import FloatArray, frozen_array
 from pcg.errors import InputError
@@ -62,7 +62,7 @@ class Segment:
     @property
     def length(self) -> float:
         """Distance driven [m]."""
-        return float(np.hypot(*np.diff(self.path, axis=0).T).sum())
+        return path_length(self.path)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,11 +126,6 @@ class Plan:
     def pick_places(self) -> int:
         """How often an object is picked, carried and placed."""
         return sum(segment.mode == "carry" for segment in self.segments)
-
-    @property
-    def jumps(self) -> list[float]:
-        """Distance [m] between the end of each segment and the start of the next; all 0 in a valid plan."""
-        return [float(np.hypot(*(b.path[0] - a.path[-1]))) for a, b in pairwise(self.segments)]
 
 
 def write_plan(path: Path, plan: Plan) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from converter.drawing import Drawing, Item, Label, Line, Rounded, Shape
 from converter.plan import Plan
+from converter.polyline import path_length
 from converter.raster import Image, paint
 from converter.render_scene import agent_shape, body_shape, object_color, scene_drawing
 from converter.replay import Step, points_along, replay
@@ -127,7 +128,7 @@ def _move_path(path: FloatArray, unit: float, theme: Theme) -> list[Item]:
 
 def _arrow(path: FloatArray, length: float) -> list[Rounded]:
     """An arrow head of `length` [m] in the middle of a path; none if the path is too short for one."""
-    total = float(np.hypot(*np.diff(path, axis=0).T).sum())
+    total = path_length(path)
     if total < 3 * length:
         return []
     before, middle, after = points_along(path, total / 2 + length / 4 * np.array([-1.0, 0.0, 1.0]))

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from converter.plan import Segment
+from converter.polyline import path_length
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace
 from planner.pick_place import PickPlace
@@ -76,11 +77,6 @@ def carries_of(problem: Problem, segments: Sequence[Segment]) -> tuple[Carry, ..
         positions[index] = segment.path[-1] - grasp
         carries.append(Carry(index, grasp, positions[index].copy()))
     return tuple(carries)
-
-
-def path_length(path: FloatArray) -> float:
-    """Length [m] of the polyline `path` (n, 2)."""
-    return float(np.hypot(*np.diff(path, axis=0).T).sum())
 
 
 @dataclass

@@ -82,8 +82,7 @@ class Draws:
         if key not in self._stretches:
             if len(self._stretches) >= KEPT_STRETCHES:
                 self._stretches.clear()
-            obstacles = self._problem.agent_space(configuration, held=index).obstacles
-            stretches = self._curves[index].free_stretches(obstacles.moved(-configuration.objects[index]))
+            stretches = self._curves[index].free_stretches(self._problem.grasp_obstacles(configuration, index))
             margin = np.minimum(GRASP_MARGIN, (stretches[:, 1] - stretches[:, 0]) / 2)
             self._stretches[key] = stretches + margin[:, None] * np.array([1.0, -1.0])
         return self._stretches[key]

@@ -121,7 +121,7 @@ class ExactPickPlace:
     def _reachable_grasps(self, index: int) -> list[_Grasp]:
         if index not in self._grasps:
             position = self._configuration.objects[index]
-            obstacles = self._problem.agent_space(self._configuration, held=index).obstacles.moved(-position)
+            obstacles = self._problem.grasp_obstacles(self._configuration, index)
             offsets = self._curves[index].sample_free(self._settings.grasp_starts, obstacles, self._rng)
             reached = self._from_agent.reaches(position + offsets)
             space_at = self._problem.carry_spaces(self._configuration, index)

@@ -107,8 +107,7 @@ class SampledPickPlace:
                     yield grasp, placed
 
     def _free_grasps(self, index: int) -> FloatArray:
-        position = self._configuration.objects[index]
-        obstacles = self._problem.agent_space(self._configuration, held=index).obstacles.moved(-position)
+        obstacles = self._problem.grasp_obstacles(self._configuration, index)
         return self._curves[index].sample_free(self._settings.grasp_starts, obstacles, self._rng)
 
     def _motion(

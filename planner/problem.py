@@ -92,6 +92,10 @@ class Problem:
         others = self._others(self.agent_objects, configuration, held)
         return ConfigurationSpace(ObstacleSet.union([self.agent_walls, *others]), self.scene.bounds)
 
+    def grasp_obstacles(self, configuration: Configuration, index: int) -> ObstacleSet:
+        """Obstacles of the agent's centre relative to that of object `index`, which is none itself."""
+        return self.agent_space(configuration, held=index).obstacles.moved(-configuration.objects[index])
+
     def object_space(self, configuration: Configuration, index: int) -> ConfigurationSpace:
         """Where the centre of object `index` may be; the agent is no obstacle."""
         others = self._others(self.object_objects[index], configuration, index)

@@ -23,6 +23,7 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
+from converter.polyline import path_length
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace
 from planner.kernel import BoolArray, IntArray, segment_free
@@ -204,8 +205,4 @@ def shortest_path(
         return MotionResult(None, 0)
     tree = ShortestPathTree(space, start)
     paths = [path for path in map(tree.path_to, goals) if path is not None]
-    return MotionResult(min(paths, key=_length, default=None), 0)
-
-
-def _length(path: FloatArray) -> float:
-    return float(np.hypot(*np.diff(path, axis=0).T).sum())
+    return MotionResult(min(paths, key=path_length, default=None), 0)

@@ -8,6 +8,7 @@ import pytest
 from converter.scene import Body
 from converter.shape import Part
 from pcg.errors import InputError
+from planner.configuration_space import ConfigurationSpace
 from planner.problem import Configuration, Problem
 from tests.planner.scenes import body, room, vectors, wall
 
@@ -134,3 +135,14 @@ def test_starts_have_to_be_in_bounds(agent: tuple[float, float], obj: tuple[floa
     """Each centre starts within the bounds; the message names the one that does not and where it is."""
     with pytest.raises(InputError, match=message):
         Problem(room(objects=(body("obj", *obj),), agent=agent))
+
+
+def test_grasp_obstacles_are_those_of_the_agent_about_the_object():
+    """An offset from the object is free exactly where the agent, holding it, is free in the world."""
+    problem = Problem(room(wall(0.5, 0, 0.4, 2), objects=(body("obj", 0, 0.1), body("other", -1, 1)), agent=(-1, -1)))
+    configuration = problem.initial
+    offsets = np.random.default_rng(0).uniform(-1.2, 1.2, (200, 2))
+    relative = ConfigurationSpace(problem.grasp_obstacles(configuration, 0), np.array([[-9.0, -9.0], [9.0, 9.0]]))
+    held = problem.agent_space(configuration, held=0).points_free(offsets + configuration.objects[0])
+    assert 0 < held.sum() < 200
+    np.testing.assert_array_equal(relative.points_free(offsets), held)
