@@ -3,16 +3,19 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
+RL_BIN := .venv-rl/bin
+RL_INSTALLED := .venv-rl/.installed
 COMPILE := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-header --group dev
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo bench test lock
+.PHONY: help setup setup-rl demo bench test test-rl lock
 
 help:
 	@echo "make setup  install the locked dependencies and manipuzzle itself into .venv"
 	@echo "make demo   generate, convert, check, solve, verify and draw levels and puzzles into out/"
 	@echo "make bench  time the parts, with peers beside them"
 	@echo "make test   lint, types and tests: what CI runs"
+	@echo "make test-rl  the tests that need torch, in an environment of their own (.venv-rl)"
 	@echo "make lock   resolve the dependencies anew into the two lock files"
 
 setup: $(INSTALLED)
@@ -38,8 +41,20 @@ test: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 -m "not rl"
+
+# torch has an environment of its own, so that setting up and testing the rest stays small.
+setup-rl: $(RL_INSTALLED)
+
+$(RL_INSTALLED): pyproject.toml requirements-rl.lock | $(BIN)/uv
+	$(BIN)/uv venv --quiet --allow-existing --python $(BIN)/python .venv-rl
+	$(BIN)/uv pip sync --quiet --python $(RL_BIN)/python --require-hashes requirements-rl.lock
+	$(BIN)/uv pip install --quiet --python $(RL_BIN)/python --no-deps --editable .
+	touch $@
+
+test-rl: setup-rl
+	$(RL_BIN)/python -m pytest -m rl
 
 lock: $(BIN)/uv
-	$(COMPILE) --output-file requirements.lock pyproject.toml
-	$(COMPILE) --extra rl --output-file requirements-rl.lock pyproject.toml
+	$(COMPILE) --extra cluster --output-file requirements.lock pyproject.toml
+	$(COMPILE) --extra cluster --extra rl --output-file requirements-rl.lock pyproject.toml
