@@ -40,7 +40,7 @@ _CHARACTERS = {
     Tile.CRATE_ON_TARGET: "*",
     Tile.PLAYER_ON_TARGET: "+",
 }
-_TILES = {character: tile for tile, character in _CHARACTERS.items()} | {"-": Tile.FLOOR, "_": Tile.FLOOR}
+TILE_OF_CHARACTER = {character: tile for tile, character in _CHARACTERS.items()} | {"-": Tile.FLOOR, "_": Tile.FLOOR}
 _ROW = re.compile(r"[ \t_-]*#|[ _-]*[@+$*.][ _@+$*.#-]*$")
 _TITLE = re.compile(r"title\s*:(.*)", re.IGNORECASE)
 
@@ -180,11 +180,11 @@ def _tiles(block: _Block, where: str) -> TileArray:
         raise InputError(_at(where, block.line), problem)
     tiles = np.full((len(rows) + 2, columns + 2), Tile.FLOOR, dtype=np.uint8)
     for i, row in enumerate(rows):
-        if unknown := set(row) - _TILES.keys():
+        if unknown := set(row) - TILE_OF_CHARACTER.keys():
             column = min(map(row.index, unknown))
             problem = f"column {column + 1} holds {row[column]!r}; allowed are # @ + $ * . and, for floor, space - _"
             raise InputError(_at(where, block.line + i), problem)
-        tiles[i + 1, 1 : len(row) + 1] = [_TILES[character] for character in row]
+        tiles[i + 1, 1 : len(row) + 1] = [TILE_OF_CHARACTER[character] for character in row]
     return tiles
 
 
