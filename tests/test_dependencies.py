@@ -24,6 +24,7 @@ HOMES = {
     },
     "cv2": {"converter/raster.py", "converter/image_file.py"},
     "numba": {
+        "pcg/solver_kernel.py",
         "planner/kernel.py",
         "planner/rrt_connect.py",
         "planner/shortcut.py",
