@@ -4,6 +4,8 @@ v_o is 1 if the goal-object sees the goal, v_g is 1 if the goal-object sees the 
 goal-object's centre is closer than 0.2 m to the goal's, 2 if closer than 0.4 m, else 0.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from converter.shape import FloatArray
@@ -13,6 +15,10 @@ from planner.problem import Configuration, Problem
 GOAL_WEIGHT, AGENT_WEIGHT = 10.0, 5.0
 NEAR, NEAR_BONUS = 0.2, 5.0
 FAR, FAR_BONUS = 0.4, 2.0
+
+
+Heuristic = Callable[[Problem, Configuration], float]
+"""How promising a configuration is; higher is more promising."""
 
 
 def score(problem: Problem, configuration: Configuration) -> float:
@@ -33,6 +39,15 @@ def scores_if(problem: Problem, configuration: Configuration, index: int, candid
     v_g = goal_object_sees_if(problem, configuration, index, candidates, configuration.agent)
     where = candidates if index == problem.goal_index else configuration.objects[problem.goal_index][None]
     return np.asarray(GOAL_WEIGHT * v_o + AGENT_WEIGHT * v_g + _distance_bonus(problem, where))
+
+
+def scores_by(heuristic: Heuristic) -> Callable[[Problem, Configuration, int, FloatArray], FloatArray]:
+    """The counterpart of `scores_if` for another heuristic, which is asked once per candidate."""
+
+    def scores(problem: Problem, configuration: Configuration, index: int, candidates: FloatArray) -> FloatArray:
+        return np.array([heuristic(problem, configuration.with_object(index, z)) for z in candidates], dtype=np.float64)
+
+    return scores
 
 
 def _distance_bonus(problem: Problem, positions: FloatArray) -> FloatArray:

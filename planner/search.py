@@ -20,12 +20,12 @@ from converter.scene import Scene
 from converter.shape import FloatArray
 from planner.assemble import segments_of, subgoals_of
 from planner.frontier import Frontier, Node, Rejection
-from planner.heuristics import score
+from planner.heuristics import Heuristic, score, scores_by, scores_if
 from planner.pick_place import PickPlace, PickPlaceSolver, Region
 from planner.problem import Configuration, Problem
 from planner.result import PlanResult, Progress
 from planner.settings import Settings
-from planner.subgoals import GENERATORS, propose_subgoals
+from planner.subgoals import GENERATORS, GeneratorFactory, propose_subgoals
 from planner.subproblems import subproblem_solvers
 
 
@@ -36,6 +36,8 @@ def solve(
     *,
     should_stop: Callable[[], bool] = lambda: False,
     on_progress: Callable[[Progress], object] = lambda _: None,
+    generator: GeneratorFactory | None = None,
+    heuristic: Heuristic | None = None,
 ) -> PlanResult:
     """Searches for a plan that brings the goal-object to the goal.
 
@@ -45,11 +47,14 @@ def solve(
         rng: Source of all randomness.
         should_stop: Asked between subproblems; True ends the search with status `timeout`.
         on_progress: Told after every expansion that did not end the search.
+        generator: Makes the subgoal generator; None for that of the method.
+        heuristic: Scores configurations for filter and selection; None for that of [L].
 
     Raises:
         InputError: bodies of the scene overlap at the start, or method Hum has no demonstration for the scene.
     """
-    return Search(Problem(scene), settings, rng, should_stop, on_progress).run()
+    problem = Problem(scene)
+    return Search(problem, settings, rng, should_stop, on_progress, generator=generator, heuristic=heuristic).run()
 
 
 class Search:
@@ -62,6 +67,8 @@ class Search:
         should_stop: Asked between subproblems; True ends the search with status `timeout`.
         on_progress: Told after every expansion that did not end the search.
         max_pick_places: The most pick-places that a plan may have; None for no limit.
+        generator: Makes the subgoal generator; None for that of the method.
+        heuristic: Scores configurations for filter and selection; None for that of [L].
 
     Attributes:
         nodes: Afterwards the search tree.
@@ -77,6 +84,9 @@ class Search:
         should_stop: Callable[[], bool] = lambda: False,
         on_progress: Callable[[Progress], object] = lambda _: None,
         max_pick_places: int | None = None,
+        *,
+        generator: GeneratorFactory | None = None,
+        heuristic: Heuristic | None = None,
     ) -> None:
         self.problem = problem
         self.settings = settings
@@ -87,7 +97,9 @@ class Search:
         self._best_score = -np.inf
         self._frontier = Frontier(settings)
         self._rejection = Rejection(problem, settings)
-        self._generator = GENERATORS[settings.generator](problem, settings)
+        self._generator = (generator or GENERATORS[settings.generator])(problem, settings)
+        self._score = heuristic or score
+        self._scores_of = scores_if if heuristic is None else scores_by(heuristic)
         self._solver_for = subproblem_solvers(problem, settings, rng, self.counters, self._out_of_budget)
         self._started = time.perf_counter()
         self._should_stop = should_stop
@@ -137,7 +149,14 @@ class Search:
             return np.empty((0, 2))
         placeable = partial(subproblems.placeable, index)
         return propose_subgoals(
-            self.problem, self._generator, node.configuration, index, placeable, self.settings, self.rng
+            self.problem,
+            self._generator,
+            node.configuration,
+            index,
+            placeable,
+            self.settings,
+            self.rng,
+            self._scores_of,
         ).subgoals
 
     def _add(self, configuration: Configuration, parent: Node | None = None, step: PickPlace | None = None) -> None:
@@ -145,7 +164,7 @@ class Search:
         if not self._rejection.accepts(configuration):
             self.counters["rejected"] += 1
             return
-        node = Node(configuration, parent, step, score(self.problem, configuration))
+        node = Node(configuration, parent, step, self._score(self.problem, configuration))
         self.nodes.append(node)
         self._best_score = max(self._best_score, node.score)
         self._frontier.add(node)

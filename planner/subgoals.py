@@ -40,7 +40,9 @@ def _bottleneck(problem: Problem, settings: Settings) -> SubgoalGenerator:
     return BottleneckSubgoals(problem, settings)
 
 
-GENERATORS: dict[str, Callable[[Problem, Settings], SubgoalGenerator]] = {
+GeneratorFactory = Callable[[Problem, Settings], SubgoalGenerator]
+
+GENERATORS: dict[str, GeneratorFactory] = {
     "Rnd": RandomSubgoals,
     "Btl": _bottleneck,
     "Hum": HumanSubgoals,
@@ -78,6 +80,7 @@ def propose_subgoals(
     placeable: Callable[[FloatArray], BoolArray],
     settings: Settings,
     rng: np.random.Generator,
+    scores_of: Callable[[Problem, Configuration, int, FloatArray], FloatArray] = scores_if,
 ) -> Proposal:
     """Positions to bring object `index` to.
 
@@ -89,10 +92,11 @@ def propose_subgoals(
         placeable: For each of some positions (n, 2) [m] whether a carry may lead there.
         settings: Number of candidates, share that the filter keeps, number of subgoals.
         rng: Source of all randomness.
+        scores_of: The score that a configuration would have with an object at each of some positions.
     """
     candidates = generator.candidates(configuration, index, settings.candidates, rng)
     candidates = candidates[placeable(candidates)]
-    scores = scores_if(problem, configuration, index, candidates)
+    scores = scores_of(problem, configuration, index, candidates)
     passed = np.arange(len(candidates))
     if "F" in settings.letters and len(candidates):
         # At least as many as are drawn, so that as many are drawn with a filter as without.
