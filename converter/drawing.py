@@ -1,7 +1,7 @@
 """What a picture shows, independent of how it is painted: shapes, lines and labels in world coordinates.
 
 A drawing is a list of items, later ones above earlier ones; x points right and y up. `converter.raster` paints one in
-pixels.
+pixels, `converter.svg` writes one as vectors.
 """
 
 from dataclasses import dataclass
@@ -75,7 +75,22 @@ class Label:
     color: Color
 
 
-Item = Shape | Line | Label
+@dataclass(frozen=True, eq=False)
+class Inset:
+    """A drawing inside another one; what lies outside of its own rectangle is cut off.
+
+    Attributes:
+        drawing: The inner drawing; its background covers what is below.
+        lower: (2,) [m], in the outer drawing: where the inner one's lower left corner comes to lie.
+        width: Of the inner drawing [m], in the outer one; its height follows from its proportions.
+    """
+
+    drawing: "Drawing"
+    lower: FloatArray
+    width: float
+
+
+Item = Shape | Line | Label | Inset
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,14 +7,14 @@ the top.
 """
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
-from converter.drawing import Drawing, Item, Label, Line, Rounded, Shape, extent
+from converter.drawing import Drawing, Inset, Item, Label, Line, Rounded, Shape, extent
 from converter.shape import FloatArray
 from converter.theme import Color
 from pcg.errors import InputError
@@ -44,11 +44,7 @@ def paint(drawing: Drawing, width_px: int) -> Image:
         InputError: the image would have no pixels or more than `MAX_PIXELS`.
     """
     width, height = drawing.upper - drawing.lower
-    height_px = round(width_px * height / width)
-    require_paintable(width_px, height_px)
-    image = np.empty((height_px, width_px, 3), dtype=np.uint8)
-    image[:] = _bytes(drawing.background)
-    return paint_over(image, drawing)
+    return _painted(drawing, width_px, round(width_px * height / width))
 
 
 def paint_over(image: Image, drawing: Drawing) -> Image:
@@ -115,10 +111,38 @@ def _paint_label(image: Image, drawing: Drawing, label: Label) -> None:
     _blend(image[top:bottom, left:right], [(label.color, visible)])
 
 
+def _paint_inset(image: Image, drawing: Drawing, inset: Inset) -> None:
+    """Puts the inner picture on whole pixels, so that tiles of one size look alike and meet without a gap."""
+    pixel = _pixel(image, drawing)
+    size = inset.drawing.upper - inset.drawing.lower
+    width, height = np.array([1.0, size[1] / size[0]]) * inset.width / pixel
+    left = round(float(inset.lower[0] - drawing.lower[0]) / pixel)
+    top = round(float(drawing.upper[1] - inset.lower[1]) / pixel - height)
+    inner = _inset_image(inset.drawing, max(round(width), 1), max(round(height), 1))
+    rows = slice(max(top, 0), min(top + inner.shape[0], image.shape[0]))
+    columns = slice(max(left, 0), min(left + inner.shape[1], image.shape[1]))
+    if rows.start < rows.stop and columns.start < columns.stop:
+        image[rows, columns] = inner[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+
+
+@lru_cache(maxsize=64)
+def _inset_image(drawing: Drawing, width_px: int, height_px: int) -> Image:
+    """An inner picture, painted once for all its places."""
+    return _painted(drawing, width_px, height_px)
+
+
+def _painted(drawing: Drawing, width_px: int, height_px: int) -> Image:
+    require_paintable(width_px, height_px)
+    image = np.empty((height_px, width_px, 3), dtype=np.uint8)
+    image[:] = _bytes(drawing.background)
+    return paint_over(image, drawing)
+
+
 _PAINTERS: dict[type[Item], Callable[[Image, Drawing, Any], None]] = {
     Shape: _paint_shape,
     Line: _paint_line,
     Label: _paint_label,
+    Inset: _paint_inset,
 }
 
 

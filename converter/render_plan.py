@@ -73,7 +73,7 @@ def plan_drawing(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Drawing:
     steps = replay(scene, plan)
     if not steps:
         return start
-    carries = [(scene.objects[step.carried], step) for step in steps if step.carried is not None]
+    carries = carries_of(scene, steps)
     places = placements(carries)
     end = agent_shape(scene, steps[-1].segment.path[-1], unit, theme)
     items: list[Item] = [_ghost(end, theme)]
@@ -88,6 +88,11 @@ def plan_drawing(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Drawing:
     for place in places:
         items += _badge(place, object_color(scene, place.body, theme), unit, theme)
     return replace(start, items=(*start.items, *items))
+
+
+def carries_of(scene: Scene, steps: list[Step]) -> list[tuple[Body, Step]]:
+    """The carries among `steps`, each with its object."""
+    return [(scene.objects[step.carried], step) for step in steps if step.carried is not None]
 
 
 def placements(carries: list[tuple[Body, Step]]) -> list[Placement]:

@@ -28,6 +28,7 @@ class Theme:
         crate: A level's crates other than its goal crate.
         outline: Around agent and objects; also text.
         move: Path of the agent alone.
+        subgoal: Dots where objects are to be placed.
         badge: Behind numbers.
         outline_width: Of every outline.
         move_width: Of the agent's path alone.
@@ -50,6 +51,7 @@ class Theme:
     crate: Color = (0.98, 0.93, 0.84)
     outline: Color = (0.20, 0.20, 0.23)
     move: Color = (0.33, 0.33, 0.37)
+    subgoal: Color = (0.55, 0.55, 0.58)
     badge: Color = (1.0, 1.0, 1.0)
     outline_width: float = 1.5
     move_width: float = 1.8

@@ -23,6 +23,7 @@ HOMES = {
         "planner/nlp.py",
     },
     "cv2": {"converter/raster.py", "converter/image_file.py"},
+    "jinja2": {"converter/viewer_page.py"},
     "numba": {
         "pcg/solver_kernel.py",
         "planner/kernel.py",
