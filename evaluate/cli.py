@@ -155,7 +155,7 @@ def convert(
     inputs: Annotated[list[Path], typer.Argument(metavar="LEVEL|SCENE", help="XSB files, level sets, scene files.")],
     *,
     out: Out,
-    to: Annotated[str, typer.Option(metavar="NAME", help="Format of the scenes: yaml.")] = "yaml",
+    to: Annotated[str, typer.Option(metavar="NAME", help="Format of the scenes: yaml or mjcf (MuJoCo).")] = "yaml",
     preset: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Geometry: clear (default for levels) or published.", show_default=False),
@@ -163,7 +163,7 @@ def convert(
     tolerance: Tolerance = None,
     json: Json = False,
 ) -> None:
-    """Convert levels and scenes to scene files DIR/{name}.yaml.
+    """Convert levels and scenes to scene files DIR/{name}.yaml, or .xml for MuJoCo.
 
     Example:  manipuzzle convert out/levels --out out/scenes
     """

@@ -13,8 +13,14 @@ def _read_rai_g(path: Path) -> Scene:
     return read_rai_g(path)
 
 
+def _write_mjcf(path: Path, scene: Scene) -> None:
+    from converter.formats.mjcf import write_mjcf  # noqa: PLC0415 - most programs never write a model
+
+    write_mjcf(path, scene)
+
+
 _READERS = {".yaml": read_scene_yaml, ".yml": read_scene_yaml, ".g": _read_rai_g}
-_WRITERS = {".yaml": write_scene_yaml, ".yml": write_scene_yaml}
+_WRITERS = {".yaml": write_scene_yaml, ".yml": write_scene_yaml, ".xml": _write_mjcf}
 
 
 def read_scene(path: Path) -> Scene:

@@ -21,6 +21,9 @@ MAX_LENGTH = 1e4
 MIN_LENGTH = 1e-6
 """Smallest size [m]."""
 
+MAX_PARTS = 100
+"""Most parts of a body."""
+
 _NOISE = 1e-12
 """Numbers this close to nine decimals are meant to be those: 0.1 + 0.2 is written 0.3."""
 
@@ -62,7 +65,7 @@ class BodyDocument(Document):
     position: tuple[Number, Number, Number]
     size: tuple[Length, Length, Length] | None = None
     polygon: Polygon | None = None
-    parts: Annotated[tuple[PartDocument, ...], Field(min_length=1, max_length=100)] | None = None
+    parts: Annotated[tuple[PartDocument, ...], Field(min_length=1, max_length=MAX_PARTS)] | None = None
     height: Length | None = None
     edge_radius: Radius = 0.0
     yaw: Number = 0.0

@@ -21,7 +21,8 @@ from evaluate.names import require_distinct, safe_name
 from evaluate.output import print_json, print_line, print_table, progress
 from pcg.level import Level
 
-FORMATS = ("yaml",)
+FORMATS = {"yaml": ".yaml", "mjcf": ".xml"}
+"""Suffix of the files of each format."""
 
 
 def scene_of(level: Level, preset: str | None = None, tolerance: float | None = None) -> Scene:
@@ -43,7 +44,7 @@ def run(
     inputs: Sequence[Path], out: Path, *, to: str, preset: str | None, tolerance: float | None, as_json: bool
 ) -> bool:
     """Runs the command; see `evaluate.cli.convert`."""
-    require_choice("--to", to, FORMATS)
+    require_choice("--to", to, list(FORMATS))
     if preset is not None:
         require_choice("--preset", preset, list(PRESETS))
     jobs = [job for path in inputs for job in _jobs(path, preset, tolerance)]
@@ -52,7 +53,7 @@ def run(
     results = []
     with progress() as bar:
         for name, scene in bar.track(jobs, description="scenes"):
-            file = out / f"{name}.{to}"
+            file = out / f"{name}{FORMATS[to]}"
             write_scene(file, scene())
             results.append((name, str(file)))
     if as_json:
