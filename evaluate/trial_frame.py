@@ -1,0 +1,170 @@
+"""The trials of a study as a data frame, read in batches: all that tables and plots need of them, without the plans.
+
+This and `evaluate.scene_records` are the only readers of the database besides `evaluate.store`.
+"""
+
+import contextlib
+import json
+import sqlite3
+import tempfile
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from evaluate.statistics import FloatArray
+from evaluate.store import FILE_NAME
+from pcg.errors import InputError
+from pcg.files import replacing
+
+BATCH = 20_000
+"""Rows that are in memory as Python objects at a time."""
+
+_COLUMNS = {
+    "scene": ("scene", pl.String),
+    "scene_hash": ("scene_hash", pl.String),
+    "method": ("method", pl.String),
+    "settings_hash": ("settings_hash", pl.String),
+    "seed": ("seed", pl.Int64),
+    "status": ("status", pl.String),
+    "solved": ("coalesce(verified, 0)", pl.Boolean),
+    "accepted": ("CAST(json_extract(counters, '$.accepted') AS INTEGER)", pl.Int64),
+    "time_s": ("time_s", pl.Float64),
+    "subgoal_time_s": ("CAST(json_extract(counters, '$.subgoal_time_s') AS REAL)", pl.Float64),
+    "path_length_m": ("path_length_m", pl.Float64),
+    "pick_places": ("pick_places", pl.Int64),
+    "time_limit": ("CAST(json_extract(settings, '$.time_limit') AS REAL)", pl.Float64),
+    "preset": ("CAST(json_extract(settings, '$.preset') AS TEXT)", pl.String),
+}
+"""Columns of the frame: what they are in SQL, and their types."""
+
+
+@contextlib.contextmanager
+def reading(folder: Path) -> Iterator[sqlite3.Connection]:
+    """The database of a study, for reading only; a study may write to it meanwhile.
+
+    Raises:
+        InputError: there is none in `folder`, or it is damaged.
+    """
+    path = folder / FILE_NAME
+    if not path.is_file():
+        raise InputError(str(folder), f"no study here: there is no {FILE_NAME}")
+    try:
+        with contextlib.closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as connection:
+            yield connection
+    except sqlite3.Error as error:
+        raise InputError(str(path), f"not usable as a study's database: {error}") from None
+
+
+def read_trials(folder: Path) -> pl.DataFrame:
+    """One row a trial with the columns of `_COLUMNS`.
+
+    Names are made to tell apart what differs: scenes of one name and different geometry get the beginning of their
+    hash, methods of one name and different settings get the settings in which they differ.
+
+    Raises:
+        InputError: there is no study in `folder`, its database is damaged, or it holds no trials.
+    """
+    expressions = ", ".join(f"{sql} AS {name}" for name, (sql, _) in _COLUMNS.items())
+    schema = {name: type_ for name, (_, type_) in _COLUMNS.items()}
+    with reading(folder) as connection:
+        rows = connection.execute(f"SELECT {expressions} FROM trial ORDER BY rowid")  # noqa: S608  # no outside text
+        frames = [pl.DataFrame(batch, schema=schema, orient="row") for batch in _batches(rows)]
+        labels = _method_labels(connection)
+    if not frames:
+        raise InputError(str(folder), "the study holds no trials yet")
+    names = pl.DataFrame(labels, schema=["method", "settings_hash", "label"], orient="row")
+    frame = pl.concat(frames).join(names, on=["method", "settings_hash"], how="left", maintain_order="left")
+    hashes = pl.col("scene_hash").n_unique().over("scene")
+    return frame.with_columns(
+        method=pl.col("label"),
+        scene=pl.when(hashes > 1)
+        .then(pl.format("{} [{}]", "scene", pl.col("scene_hash").str.head(4)))
+        .otherwise(pl.col("scene")),
+    ).drop("label")
+
+
+def planning_times(frame: pl.DataFrame, *, column: str = "time_s") -> dict[str, FloatArray]:
+    """The times of each method as a (runs, scenes) matrix, see `evaluate.statistics`.
+
+    Scenes and methods are in the order in which they first occur. A seed has the same row in all methods; with other
+    seeds for each scene a row is the n-th seed of each.
+
+    Args:
+        frame: As `read_trials` gives it.
+        column: Where the times of solved runs are.
+    """
+    scenes, methods = names_in(frame, "scene"), names_in(frame, "method")
+    indexed = frame.select(
+        "method",
+        scene=pl.col("scene").replace_strict(scenes, range(len(scenes)), return_dtype=pl.Int64),
+        run=pl.col("seed").rank("dense").over("scene").cast(pl.Int64) - 1,
+        time=pl.when("solved").then(column).otherwise(np.inf),
+    )
+    runs = int(indexed["run"].max()) + 1  # type: ignore[arg-type]  # polars cannot know that it is a number
+    matrices = {}
+    for method in methods:
+        rows = indexed.filter(pl.col("method") == method)
+        matrix = np.full((runs, len(scenes)), np.nan)
+        matrix[rows["run"].to_numpy(), rows["scene"].to_numpy()] = rows["time"].to_numpy()
+        matrices[method] = matrix
+    return matrices
+
+
+def names_in(frame: pl.DataFrame, column: str) -> list[str]:
+    """The different values of a column in the order in which they first occur."""
+    return frame[column].unique(maintain_order=True).to_list()
+
+
+def write_parquet(folder: Path, path: Path) -> int:
+    """Writes all rows of a study to a Parquet file, every column but the plans; in bounded memory.
+
+    Returns:
+        The number of rows.
+
+    Raises:
+        InputError: there is no study, or the file cannot be written.
+    """
+    with reading(folder) as connection, replacing(path) as temporary, tempfile.TemporaryDirectory() as parts:
+        columns = [row[1] for row in connection.execute("PRAGMA table_info(trial)") if row[1] != "plan"]
+        types = connection.execute("SELECT type FROM pragma_table_info('trial') WHERE name != 'plan'")
+        schema = {name: _PARQUET_TYPES[type_] for name, (type_,) in zip(columns, types, strict=True)}
+        rows = connection.execute(f"SELECT {', '.join(columns)} FROM trial ORDER BY rowid")  # noqa: S608  # our columns
+        files = []
+        for i, batch in enumerate(_batches(rows)):
+            files.append(Path(parts) / f"{i:06}.parquet")
+            pl.DataFrame(batch, schema=schema, orient="row").write_parquet(files[-1])
+        scan = pl.scan_parquet(files) if files else pl.LazyFrame(schema=schema)
+        scan.with_columns(pl.col("verified").cast(pl.Boolean)).sink_parquet(temporary)
+        return int(connection.execute("SELECT count(*) FROM trial").fetchone()[0])
+
+
+_PARQUET_TYPES = {"TEXT": pl.String, "INTEGER": pl.Int64, "REAL": pl.Float64}
+
+
+def _batches(rows: sqlite3.Cursor) -> Iterator[list[Any]]:
+    while batch := rows.fetchmany(BATCH):
+        yield batch
+
+
+def _method_labels(connection: sqlite3.Connection) -> list[tuple[str, str, str]]:
+    """Method, hash of its settings, and its name in the report, for all that occur."""
+    found: dict[str, dict[str, dict[str, Any]]] = {}
+    query = "SELECT method, settings_hash, settings FROM trial GROUP BY method, settings_hash ORDER BY min(rowid)"
+    for method, hash_, settings in connection.execute(query):
+        found.setdefault(method, {})[hash_] = json.loads(settings)
+    return [
+        (method, hash_, _label(method, hash_, settings, variants.values()))
+        for method, variants in found.items()
+        for hash_, settings in variants.items()
+    ]
+
+
+def _label(method: str, hash_: str, settings: dict[str, Any], variants: Collection[dict[str, Any]]) -> str:
+    if len(variants) == 1:
+        return method
+    different = [key for key in settings if len({json.dumps(other.get(key)) for other in variants}) > 1]
+    values = ", ".join(f"{key}={settings[key]}" for key in different)
+    return f"{method} [{values or hash_[:4]}]"
