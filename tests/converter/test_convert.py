@@ -1,5 +1,6 @@
 import logging
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 
 from converter.convert import ConversionSettings, convert_level
 from converter.formats import read_scene, write_scene
+from converter.preset import PRESETS
 from converter.scene import Scene
 from pcg.errors import InputError
 from pcg.level import Level
@@ -139,11 +141,109 @@ def test_the_settings_are_recorded():
         "cell": 0.5,
         "wall_height": 0.6,
         "object_size": 0.3,
+        "object_height": 0.3,
         "goal_size": 0.2,
         "agent_radius": 0.2,
         "agent_height": 0.2,
+        "merge_walls": False,
+        "size_jitter": 0.0,
+        "yaw_jitter": 0.0,
+        "seed": 0,
+        "goal_crate": None,
+        "drop_targets": False,
+        "drop_crates": False,
     }
     assert convert(TINY, ConversionSettings(agent_radius=0.15)).agent.radius == 0.15
+
+
+JITTERED = {
+    "clear": ConversionSettings(size_jitter=0.4, yaw_jitter=0.8, seed=3),
+    "published": ConversionSettings("published", object_size=0.15, size_jitter=0.4, yaw_jitter=np.pi, seed=3),
+}
+
+
+@pytest.mark.parametrize("preset", JITTERED)
+@given(st.integers(3, 6), st.integers(3, 6), st.integers(0, 2**32 - 1))
+def test_jittered_objects_stay_clear_of_everything(preset: str, rows: int, columns: int, seed: int):
+    """However crowded a level is: every object keeps to the part of its cell that no outer wall covers."""
+    settings = JITTERED[preset]
+    tiles = np.random.default_rng(seed).choice([0, 1, 3], (rows, columns), p=[0.4, 0.3, 0.3]).astype(np.uint8)
+    tiles[1, :3] = [2, 3, 4]
+    scene = convert_level(Level(tiles, goal_crate=(1, 1)), settings)
+    plain = convert_level(Level(tiles, goal_crate=(1, 1)), replace(settings, size_jitter=0.0, yaw_jitter=0.0))
+    room = 0.4 - 2 * PRESETS[preset].outer_wall_overhang
+    for body, cube in zip(scene.objects, plain.objects, strict=True):
+        reach = np.abs(body.cores[0]).max() + body.parts[0].edge_radius
+        assert reach <= room / 2 + 1e-12
+        assert np.abs(np.array(body.parts[0].box_size) / settings.object_size - 1).max() <= 0.4 + 1e-12
+        assert abs(body.yaw) <= settings.yaw_jitter
+        np.testing.assert_array_equal(body.position[:2], cube.position[:2])
+
+
+def test_every_object_has_its_own_draws():
+    """They depend on the seed and the tiles, not on the name, the goal crate, the walls or the other options."""
+
+    def sizes(settings: ConversionSettings, name: str = "tiny") -> dict[tuple[float, ...], tuple[object, float]]:
+        (level,) = parse_levels(TINY.replace("tiny", name), "levels.xsb")
+        bodies = convert_level(level, settings).objects
+        return {tuple(body.position[:2]): (body.parts[0].box_size, body.yaw) for body in bodies}
+
+    settings = JITTERED["clear"]
+    found = sizes(settings)
+    assert len({yaw for _, yaw in found.values()}) == len({size for size, _ in found.values()}) == 2
+    assert found == sizes(settings, "other") == sizes(replace(settings, goal_crate=2, merge_walls=True))
+    turned = sizes(replace(settings, size_jitter=0.0))
+    assert {place: yaw for place, (_, yaw) in turned.items()} == {place: yaw for place, (_, yaw) in found.items()}
+    assert {size for size, _ in turned.values()} == {(0.2, 0.2)}
+    assert found != sizes(replace(settings, seed=4))
+
+
+def test_heights():
+    """Objects may be flat or tall; they stand on the floor."""
+    scene = convert(TINY, ConversionSettings(object_height=0.5))
+    assert {body.bottom_top for body in scene.objects} == {(0.0, 0.5)}
+    assert scene.source["settings"]["object_height"] == 0.5
+
+
+def test_the_goal_crate_may_be_chosen():
+    """By its number in reading order, whatever the level says."""
+    (level,) = parse_levels(TINY, "levels.xsb")
+    scene = convert_level(replace(level, goal_crate=(1, 1)), ConversionSettings(goal_crate=2))
+    assert (scene.source["goal_crate"], scene.source["goal_crate_from"]) == ([1, 3], "option")
+    np.testing.assert_array_equal(scene.goal_object.position, [0.4, 0, 0.1])
+    with pytest.raises(InputError, match=r"^tiny: goal_crate: 3, but the level has 2 crates$"):
+        convert_level(level, ConversionSettings(goal_crate=3))
+
+
+TWO_GOALS = "; two\n#######\n#@ $. #\n#   $.#\n#     #\n#######\n"
+
+
+def test_surplus_targets_are_kept_in_the_record_or_dropped():
+    """The scene has one goal in both cases; dropping them changes what the solver is asked."""
+    kept, dropped = (convert(TWO_GOALS, ConversionSettings(drop_targets=drop)) for drop in (False, True))
+    np.testing.assert_array_equal(kept.goal.position, dropped.goal.position)
+    assert "dropped" not in kept.source
+    assert (kept.source["goal_crate"], dropped.source["goal_crate"]) == ([0, 2], [1, 3])
+    assert dropped.source["dropped"] == {"crates": [], "targets": [[1, 4]]}
+    (level,) = parse_levels(dropped.source["xsb"], "source")
+    assert level.targets == [(0, 3)]
+
+
+def test_surplus_crates_are_kept_as_obstacles_or_dropped():
+    """Without them the recorded level is that of the scene: one crate, one target."""
+    scene = convert(TWO_GOALS, ConversionSettings(drop_crates=True, goal_crate=1))
+    assert [body.name for body in scene.objects] == ["obj"]
+    assert scene.source["dropped"] == {"crates": [[1, 3]], "targets": [[1, 4]]}
+    (level,) = parse_levels(scene.source["xsb"], "source")
+    assert (level.crates, level.targets) == ([(0, 2)], [(0, 3)])
+
+
+def test_solvability_without_the_other_crates():
+    """A solvable level stays so; of an unsolvable one nothing is known any more."""
+    stuck = "######\n#@$$ #\n#$ . #\n######\n"
+    assert convert(stuck).source["solvable"] is False
+    assert convert(stuck, ConversionSettings(drop_crates=True)).source["solvable"] is None
+    assert convert(TWO_GOALS, ConversionSettings(drop_crates=True)).source["solvable"] is True
 
 
 def test_conversion_is_deterministic_and_survives_its_file(tmp_path: Path):
@@ -188,6 +288,17 @@ def test_a_level_of_too_many_walls_is_refused():
         ({"object_size": 0.5}, "object_size: 0.5 m must fit a cell"),
         ({"cell": 0.01, "object_size": 0.01, "preset": "published"}, "cell: 0.01 m must be more than two edge radii"),
         ({"object_size": 0.04, "preset": "published"}, "object_size: 0.04 m must fit a cell and exceed"),
+        (
+            {"object_size": 0.1, "size_jitter": 0.7, "preset": "published"},
+            "object_size: 0.1 m must fit a cell and exceed",
+        ),
+        ({"object_height": 0.0}, "object_height: 0.0 m must be between"),
+        ({"size_jitter": 1.0}, "size_jitter: 1.0 must be at least 0 and less than 1"),
+        ({"yaw_jitter": -0.1}, "yaw_jitter: -0.1 rad must be between 0 and pi"),
+        ({"seed": -1}, "seed: -1 must not be negative"),
+        ({"goal_crate": 0}, "goal_crate: 0 is not the number of a crate"),
+        ({"object_size": 0.3, "yaw_jitter": 1.0}, "object_size: boxes of 0.3 m with this jitter may be 0.424 m wide"),
+        ({"size_jitter": 0.6, "preset": "published"}, "may be 0.32 m wide; a cell has 0.3 m"),
     ],
 )
 def test_impossible_settings_are_refused(fields: dict[str, float | str], message: str):
