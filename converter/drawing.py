@@ -64,7 +64,7 @@ class Label:
 
     Attributes:
         text: What it says.
-        position: (2,) [m]: the middle of the text.
+        position: (2,) [m]: the middle of the text, half a capital letter above its baseline.
         height: Font size [m].
         color: Its colour.
     """
@@ -137,3 +137,10 @@ def extent(parts: tuple[Rounded, ...]) -> FloatArray:
     lower = np.min([part.core.min(axis=0) - part.radius for part in parts], axis=0)
     upper = np.max([part.core.max(axis=0) + part.radius for part in parts], axis=0)
     return np.array([lower, upper])
+
+
+def fitted(drawing: Drawing, center: npt.ArrayLike, size: npt.ArrayLike) -> Inset:
+    """`drawing` as large as it fits into the box around `center` (2,) [m] of `size` (2,) [m]."""
+    own = drawing.upper - drawing.lower
+    scale = float((np.asarray(size) / own).min())
+    return Inset(drawing, np.asarray(center) - scale * own / 2, scale * float(own[0]))

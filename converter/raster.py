@@ -99,10 +99,12 @@ def _paint_line(image: Image, drawing: Drawing, line: Line) -> None:
 
 def _paint_label(image: Image, drawing: Drawing, label: Label) -> None:
     pixel = _pixel(image, drawing)
-    ink = _text_mask(label.text, max(round(label.height / pixel), 1))
+    size_px = max(round(label.height / pixel), 1)
+    ink, rise = _ink(label.text, size_px)
     height, width = ink.shape
     column = round((label.position[0] - drawing.lower[0]) / pixel - width / 2)
-    row = round((drawing.upper[1] - label.position[1]) / pixel - height / 2)
+    # Labels of one height share their baseline, whatever letters they have.
+    row = round((drawing.upper[1] - label.position[1]) / pixel + _capital_height(size_px) / 2) - rise
     top, left = max(row, 0), max(column, 0)
     bottom, right = min(row + height, image.shape[0]), min(column + width, image.shape[1])
     if top >= bottom or left >= right:
@@ -230,15 +232,27 @@ def _thinned(points: FloatArray, step: float) -> FloatArray:
     return np.array([*kept, *points[1:][-1:]])
 
 
-def _text_mask(text: str, size_px: int) -> FloatArray:
-    """(h, w) in 0..1: where the text has ink, cropped to it."""
+class _Ink(NamedTuple):
+    """(h, w) in 0..1: where a text has ink, cropped to it; and how far its top lies above the baseline [px]."""
+
+    mask: FloatArray
+    rise: int
+
+
+def _ink(text: str, size_px: int) -> _Ink:
     _, top, width, height = cv2.getTextSize((0, 0), text, (0, 0), _font(), size_px, 600)
+    baseline = size_px // 2 - top
     mask = np.zeros((2 * height + size_px, width + 2 * size_px), dtype=np.uint8)
-    cv2.putText(mask, text, (size_px // 2, size_px // 2 - top), 255, _font(), size_px, 600)
+    cv2.putText(mask, text, (size_px // 2, baseline), 255, _font(), size_px, 600)
     rows, columns = np.nonzero(mask.any(axis=1))[0], np.nonzero(mask.any(axis=0))[0]
     if len(rows) == 0:
-        return np.zeros((0, 0))
-    return mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] / 255.0
+        return _Ink(np.zeros((0, 0)), 0)
+    return _Ink(mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] / 255.0, baseline - int(rows[0]))
+
+
+@cache
+def _capital_height(size_px: int) -> int:
+    return _ink("H", size_px).rise
 
 
 @cache

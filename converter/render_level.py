@@ -1,11 +1,11 @@
 """Pictures of levels: one square tile a cell, the outer wall included."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
 import numpy as np
 
-from converter.drawing import Drawing, Item, Shape, box, disc
+from converter.drawing import Drawing, Inset, Item, Rounded, Shape, box, disc
 from converter.raster import Image, paint, require_paintable
 from converter.theme import PAPER, Color, Theme, mixed
 from pcg.errors import InputError
@@ -28,10 +28,33 @@ def draw_level(level: Level, tile_px: int = 40, *, theme: Theme = PAPER) -> Imag
     """
     if tile_px < MIN_TILE_PX:
         raise InputError("tile size", f"{tile_px} pixels; at least {MIN_TILE_PX} are needed")
+    rows, columns = (count + 2 for count in level.shape)
+    require_paintable(columns * tile_px, rows * tile_px)
+    return paint(level_drawing(level, theme=theme), columns * tile_px)
+
+
+def level_drawing(level: Level, *, theme: Theme = PAPER) -> Drawing:
+    """The level as a drawing in which a tile is a unit square."""
     kinds = tile_kinds(level)
     rows, columns = kinds.shape
-    require_paintable(columns * tile_px, rows * tile_px)
-    return _tiles(tile_px, theme)[kinds].transpose(0, 2, 1, 3, 4).reshape(rows * tile_px, columns * tile_px, 3)
+    tiles = tile_drawings(theme)
+    insets = [
+        Inset(tiles[kinds[row, column]], np.array([column, rows - 1.0 - row]), 1.0)
+        for row in range(rows)
+        for column in range(columns)
+    ]
+    # One shape below all walls, so that no gap shows between tiles where a program smooths their edges.
+    ground = Shape(tuple(_wall_runs(kinds)), theme.wall_dark)
+    return Drawing(np.zeros(2), np.array([float(columns), float(rows)]), theme.floor_line, (ground, *insets))
+
+
+def _wall_runs(kinds: TileArray) -> Iterator[Rounded]:
+    """The walls of each row, neighbours as one box."""
+    rows = len(kinds)
+    for row in range(rows):
+        change = np.diff((kinds[row] == Tile.WALL).astype(int), prepend=0, append=0)
+        for first, end in zip(np.flatnonzero(change == 1), np.flatnonzero(change == -1), strict=True):
+            yield box(((first + end) / 2, rows - 0.5 - row), (float(end - first), 1.0))
 
 
 def tile_kinds(level: Level) -> TileArray:
@@ -44,13 +67,7 @@ def tile_kinds(level: Level) -> TileArray:
     return kinds
 
 
-@lru_cache(maxsize=2)
-def _tiles(tile_px: int, theme: Theme) -> Image:
-    """(kinds, tile_px, tile_px, 3): every kind of tile, painted once for a series of levels."""
-    drawings = tile_drawings(theme)
-    return np.stack([paint(drawings[kind], tile_px) for kind in range(len(drawings))])
-
-
+@lru_cache(maxsize=4)
 def tile_drawings(theme: Theme) -> Mapping[int, Drawing]:
     """The unit square of every kind of tile: those of `Tile`, `GOAL_CRATE` and `GOAL_CRATE_ON_TARGET`."""
     floor = _floor(theme)

@@ -69,7 +69,7 @@ def agent_shape(scene: Scene, position: FloatArray, unit: float, theme: Theme) -
 
 def object_color(scene: Scene, body: Body, theme: Theme) -> Color:
     """The object's own colour, or the theme's for the goal-object or for an obstacle with its place in the scene."""
-    if body.color is not None:
+    if body.color is not None and theme.own_colors:
         return body.color
     if body.name == scene.goal.object:
         return theme.goal_object

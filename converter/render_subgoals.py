@@ -3,16 +3,12 @@
 import numpy as np
 import numpy.typing as npt
 
-from converter.drawing import Drawing, Item, Label, Shape, disc
+from converter.drawing import Drawing, Inset, Item, Label, Shape, disc
 from converter.raster import Image, paint
 from converter.render_scene import scene_drawing
 from converter.scene import Scene
 from converter.shape import FloatArray
 from converter.theme import PAPER, Color, Theme, mixed
-
-LOW: Color = (1.0, 0.93, 0.62)
-HIGH: Color = (0.49, 0.05, 0.47)
-"""Colours of the lowest and the highest score; they differ in brightness, so they are told apart in grey too."""
 
 DOT_RADIUS = 5.0
 DRAWN_RADIUS = 8.0
@@ -32,6 +28,23 @@ def draw_subgoals(
     width_px: int = 1200,
     theme: Theme = PAPER,
 ) -> Image:
+    """The picture of `subgoals_drawing` as an image of `width_px` pixels' width.
+
+    Raises:
+        InputError: the image would be too large.
+    """
+    return paint(subgoals_drawing(scene, candidates, scores, passed, drawn, theme=theme), width_px)
+
+
+def subgoals_drawing(
+    scene: Scene,
+    candidates: FloatArray,
+    scores: FloatArray,
+    passed: npt.NDArray[np.int64],
+    drawn: npt.NDArray[np.int64],
+    *,
+    theme: Theme = PAPER,
+) -> Drawing:
     """All candidates on the left; on the right those that passed the filter, with rings around the ones drawn.
 
     Args:
@@ -40,29 +53,22 @@ def draw_subgoals(
         scores: (k,) of the candidates.
         passed: Indices of the candidates that passed the filter.
         drawn: Indices of the candidates that were drawn.
-        width_px: Width of the image.
         theme: Colours and line widths.
-
-    Raises:
-        InputError: the image would be too large.
     """
     everything = np.arange(len(candidates))
-    panels = [
-        (f"before the filter: {len(candidates)}", everything, everything[:0]),
-        (f"after the filter: {len(passed)}, drawn: {len(drawn)}", passed, drawn),
-    ]
-    return np.hstack(
-        [
-            paint(_panel(scene, title, candidates, scores, shown, ringed, theme), width_px // 2)
-            for title, shown, ringed in panels
-        ]
-    )
+    before = f"before the filter: {len(candidates)}"
+    after = f"after the filter: {len(passed)}, drawn: {len(drawn)}"
+    left = _panel(scene, before, candidates, scores, everything, everything[:0], theme)
+    right = _panel(scene, after, candidates, scores, passed, drawn, theme)
+    width, height = left.upper - left.lower
+    insets = (Inset(left, np.zeros(2), width), Inset(right, np.array([width, 0.0]), width))
+    return Drawing(np.zeros(2), np.array([2 * width, height]), theme.page, insets)
 
 
-def score_color(score: float, scores: FloatArray) -> Color:
+def score_color(score: float, scores: FloatArray, theme: Theme = PAPER) -> Color:
     """The colour of a score among all `scores` (n,)."""
     low, high = float(scores.min()), float(scores.max())
-    return mixed(LOW, HIGH, (score - low) / (high - low) if high > low else 1.0)
+    return mixed(theme.low_score, theme.high_score, (score - low) / (high - low) if high > low else 1.0)
 
 
 def _panel(
@@ -94,7 +100,7 @@ def _panel(
 
 
 def _dot(position: FloatArray, score: float, scores: FloatArray, unit: float, theme: Theme) -> Shape:
-    color = score_color(float(score), scores)
+    color = score_color(float(score), scores, theme)
     return Shape((disc(position, DOT_RADIUS * unit),), color, outline=theme.outline, outline_width=0.7 * unit)
 
 

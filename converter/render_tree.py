@@ -5,15 +5,15 @@ it was not (as Fig. 2 of Levit et al.); dots are configurations that were never 
 solution. In a large tree only the solution's ancestors and the first expanded configurations are shown.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 
-from converter.drawing import Drawing, Item, Label, Line, Shape, box, disc
+from converter.drawing import Drawing, Inset, Item, Label, Line, Shape, box, disc, fitted
 from converter.raster import Image, paint
-from converter.render_scene import draw_scene
+from converter.render_scene import scene_drawing
 from converter.scene import Scene
 from converter.shape import FloatArray
 from converter.theme import PAPER, Color, Theme
@@ -33,8 +33,6 @@ GAP, ROW, DOT = 0.2, 1.5, 0.09
 FRAME = 0.035
 """Width of frames and of the solution's lines, in tiles' widths."""
 
-LINE: Color = (0.62, 0.62, 0.66)
-
 
 class Mark(Enum):
     """What became of a configuration."""
@@ -44,7 +42,11 @@ class Mark(Enum):
     OPEN = "never expanded"
 
 
-_COLORS: dict[Mark, Color] = {Mark.SOLVED: (0.16, 0.62, 0.27), Mark.UNSOLVED: (0.82, 0.2, 0.18), Mark.OPEN: LINE}
+_COLORS: dict[Mark, Callable[[Theme], Color]] = {
+    Mark.SOLVED: lambda theme: theme.good,
+    Mark.UNSOLVED: lambda theme: theme.bad,
+    Mark.OPEN: lambda theme: theme.neutral,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +67,18 @@ class TreeNode:
 
 
 def draw_tree(scene: Scene, nodes: Sequence[TreeNode], *, theme: Theme = PAPER) -> Image:
-    """The tree as an image, the root (the first node) at the top.
+    """The tree as an image; see `tree_drawing`."""
+    drawing = tree_drawing(scene, nodes, theme=theme)
+    return paint(drawing, tree_width_px(drawing))
+
+
+def tree_width_px(drawing: Drawing) -> int:
+    """The width that shows a tree's small pictures well."""
+    return int(np.clip(TILE_PX * (drawing.upper - drawing.lower)[0], *WIDTH_PX))
+
+
+def tree_drawing(scene: Scene, nodes: Sequence[TreeNode], *, theme: Theme = PAPER) -> Drawing:
+    """The tree, the root (the first node) at the top; a small picture is a unit square.
 
     Raises:
         ValueError: there are no nodes.
@@ -78,12 +91,12 @@ def draw_tree(scene: Scene, nodes: Sequence[TreeNode], *, theme: Theme = PAPER) 
     parents = [-1 if node.parent is None else number[node.parent] for node in shown]
     places = layout(parents, [1.0 + GAP if node.mark is not Mark.OPEN else 3 * DOT for node in shown])
     drawing = _drawing(shown, parents, places, {number[i] for i in solution}, _caption(nodes, kept), theme)
-    width_px = int(np.clip(TILE_PX * (drawing.upper - drawing.lower)[0], *WIDTH_PX))
-    image = paint(drawing, width_px)
-    for node, place in zip(shown, places, strict=True):
-        if node.mark is not Mark.OPEN:
-            _paste(image, drawing, scene, node, place, theme)
-    return image
+    tiles = [
+        _tile(scene, node, place, theme)
+        for node, place in zip(shown, places, strict=True)
+        if node.mark is not Mark.OPEN
+    ]
+    return replace(drawing, items=(*drawing.items, *tiles))
 
 
 def layout(parents: Sequence[int], widths: Sequence[float]) -> FloatArray:
@@ -149,15 +162,15 @@ def _drawing(
     caption: str,
     theme: Theme,
 ) -> Drawing:
-    """Lines, frames and dots; the small pictures are pasted into the frames."""
+    """Lines, frames and dots, without the small pictures."""
     lines: list[Item] = []
     for i in sorted(range(1, len(shown)), key=lambda i: i in solution):
-        width, color = (FRAME, _COLORS[Mark.SOLVED]) if i in solution else (FRAME / 3, LINE)
+        width, color = (FRAME, theme.good) if i in solution else (FRAME / 3, theme.neutral)
         lines += [Line(piece, width, color) for piece in _connection(places[parents[i]], places[i])]
     marks: list[Item] = [
-        Shape((disc(place, DOT),), LINE)
+        Shape((disc(place, DOT),), theme.neutral)
         if node.mark is Mark.OPEN
-        else Shape((box(place, (1.0 + 2 * FRAME, 1.0 + 2 * FRAME)),), _COLORS[node.mark])
+        else Shape((box(place, (1.0 + 2 * FRAME, 1.0 + 2 * FRAME)),), _COLORS[node.mark](theme))
         for node, place in zip(shown, places, strict=True)
     ]
     left, right = places[:, 0].min() - 0.7, places[:, 0].max() + 0.7
@@ -175,17 +188,11 @@ def _connection(parent: FloatArray, child: FloatArray) -> list[FloatArray]:
     return [corners[i : i + 2] for i in range(3)]
 
 
-def _paste(image: Image, drawing: Drawing, scene: Scene, node: TreeNode, place: FloatArray, theme: Theme) -> None:
-    pixel = float(drawing.upper[0] - drawing.lower[0]) / image.shape[1]
+def _tile(scene: Scene, node: TreeNode, place: FloatArray, theme: Theme) -> Inset:
+    """The small picture of a node, as large as the unit square around `place` allows."""
     moved = replace(
         scene,
         agent=replace(scene.agent, position=node.agent),
         objects=tuple(body.at(xy) for body, xy in zip(scene.objects, node.objects, strict=True)),
     )
-    tile = draw_scene(moved, max(round(1.0 / pixel), 1), theme=theme)
-    height, width = tile.shape[:2]
-    # A room that is higher than wide is cut to the frame.
-    height = min(height, width)
-    row = round((drawing.upper[1] - place[1]) / pixel - height / 2)
-    column = round((place[0] - drawing.lower[0]) / pixel - width / 2)
-    image[row : row + height, column : column + width] = tile[:height]
+    return fitted(scene_drawing(moved, theme=theme), place, np.ones(2))

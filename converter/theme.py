@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from pcg.errors import InputError
+
 Color = tuple[float, float, float]
 """Red, green, blue in 0..1 (sRGB)."""
 
@@ -35,6 +37,12 @@ class Theme:
         carry_width: Of the agent's path while it carries.
         text_height: Of numbers.
         ghost_opacity: Of the fill of what is not there now: placements, the agent at the end.
+        good: Marks what is solved or valid.
+        bad: Marks what is not.
+        neutral: Marks what is neither, and lines without a meaning of their own.
+        low_score: Of the candidates with the lowest score.
+        high_score: Of those with the highest; it differs in brightness, so both are told apart in grey too.
+        own_colors: Whether objects keep the colours that their scene gives them.
     """
 
     page: Color = (1.0, 1.0, 1.0)
@@ -58,10 +66,48 @@ class Theme:
     carry_width: float = 4.5
     text_height: float = 15.0
     ghost_opacity: float = 0.28
+    good: Color = (0.16, 0.62, 0.27)
+    bad: Color = (0.82, 0.20, 0.18)
+    neutral: Color = (0.62, 0.62, 0.66)
+    low_score: Color = (1.0, 0.93, 0.62)
+    high_score: Color = (0.49, 0.05, 0.47)
+    own_colors: bool = True
 
 
 PAPER = Theme()
 """Colours after the pictures in Levit et al. (ICRA 2024): brown walls, yellow agent, blue goal-object, red goal."""
+
+
+COLORBLIND = Theme(
+    floor=(0.96, 0.96, 0.96),
+    floor_line=(0.87, 0.87, 0.87),
+    wall=(0.42, 0.42, 0.42),
+    wall_light=(0.53, 0.53, 0.53),
+    wall_dark=(0.24, 0.24, 0.24),
+    agent=(0.94, 0.89, 0.26),
+    goal=(0.84, 0.37, 0.0),
+    goal_dark=(0.48, 0.20, 0.0),
+    goal_object=(0.0, 0.45, 0.70),
+    obstacles=((1.0, 1.0, 1.0), (0.34, 0.71, 0.91), (0.80, 0.47, 0.65), (0.0, 0.62, 0.45)),
+    outline=(0.0, 0.0, 0.0),
+    good=(0.0, 0.45, 0.70),
+    bad=(0.84, 0.37, 0.0),
+    own_colors=False,
+)
+"""Colours of Okabe and Ito (2008), which people with any kind of colour vision tell apart; walls are grey."""
+
+THEMES = {"paper": PAPER, "colorblind": COLORBLIND}
+
+
+def theme_named(name: str) -> Theme:
+    """The theme called `name`.
+
+    Raises:
+        InputError: there is none.
+    """
+    if name not in THEMES:
+        raise InputError("theme", f"found {name!r}, allowed are {', '.join(THEMES)}")
+    return THEMES[name]
 
 
 def mixed(color: Color, other: Color, share: float) -> Color:
