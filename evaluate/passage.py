@@ -138,9 +138,15 @@ def _fits(scene: Scene, places: _Places, radius: float) -> bool:
 
 def _disc_space(scene: Scene, radius: float) -> ConfigurationSpace:
     """Where the centre of a disc may be among the walls."""
-    polygons = [core + wall.position[:2] for wall in scene.walls for core in wall.cores]
-    rho = [radius + part.edge_radius - SLACK for wall in scene.walls for part in wall.parts]
-    return ConfigurationSpace(ObstacleSet.of(polygons, rho).with_free_corners(), scene.bounds)
+    # Walls of one shape, such as the blocks of a level, become one set that is moved to their places.
+    shapes: dict[tuple[object, ...], ObstacleSet] = {}
+    moved = []
+    for wall in scene.walls:
+        shape = tuple((core.tobytes(), part.edge_radius) for core, part in zip(wall.cores, wall.parts, strict=True))
+        if shape not in shapes:
+            shapes[shape] = ObstacleSet.of(wall.cores, [radius + part.edge_radius - SLACK for part in wall.parts])
+        moved.append(shapes[shape].moved(wall.position[:2]))
+    return ConfigurationSpace(ObstacleSet.union(moved).with_free_corners(), scene.bounds)
 
 
 def _widened(scene: Scene, places: FloatArray, radius: float, space: ConfigurationSpace) -> FloatArray:

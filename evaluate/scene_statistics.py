@@ -7,7 +7,7 @@ stand for them: an upper bound, the same in every run.
 
 import itertools
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,8 +62,18 @@ def statistics_of(scene: Scene) -> SceneStatistics:
     Raises:
         InputError: bodies overlap at the start.
     """
+    plan = solve(scene, SEARCH, np.random.default_rng(0)).to_plan(scene, SEARCH, 0)
+    geometry = geometry_statistics_of(scene)
+    return replace(geometry, pick_places=plan.pick_places, monotone=is_monotone(plan)) if plan.solved else geometry
+
+
+def geometry_statistics_of(scene: Scene) -> SceneStatistics:
+    """The statistics that need no plan; `pick_places` and `monotone` are None.
+
+    Raises:
+        InputError: bodies overlap at the start.
+    """
     inner = [wall for wall in scene.walls if not wall.name.startswith(OUTER_WALL_PREFIX)]
-    plan = _plan_of(scene)
     return SceneStatistics(
         objects=len(scene.objects),
         walls=len(inner),
@@ -71,8 +81,8 @@ def statistics_of(scene: Scene) -> SceneStatistics:
         occluded=occluded(scene),
         narrowest_passage_m=narrowest_passage(scene),
         must_move=must_move(scene),
-        pick_places=plan.pick_places if plan.solved else None,
-        monotone=is_monotone(plan) if plan.solved else None,
+        pick_places=None,
+        monotone=None,
     )
 
 
@@ -130,10 +140,6 @@ def _suffices(problem: Problem, fixed: list[int]) -> bool:
 
 def _space(problem: Problem, obstacles: list[ObstacleSet]) -> ConfigurationSpace:
     return ConfigurationSpace(ObstacleSet.union(obstacles), problem.scene.bounds)
-
-
-def _plan_of(scene: Scene) -> Plan:
-    return solve(scene, SEARCH, np.random.default_rng(0)).to_plan(scene, SEARCH, 0)
 
 
 def _area(body: Body) -> float:

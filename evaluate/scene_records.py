@@ -1,0 +1,116 @@
+"""The scenes of a study with the best plan found for each, read one at a time."""
+
+import json
+import zlib
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+from converter.plan import Plan, plan_from_document
+from converter.scene import Scene
+from evaluate.scene_statistics import SceneStatistics, geometry_statistics_of, is_monotone
+from evaluate.trial_frame import reading
+from pcg.errors import InputError
+from pcg.files import read_text, write_text
+
+CACHE = "scene_statistics.json"
+"""File of a study's folder that keeps what takes longest: statistics by the hash of the scene."""
+
+CACHE_VERSION = 1
+
+_BEST = """
+SELECT scene_hash, plan FROM trial WHERE rowid IN (
+    SELECT id FROM (
+        SELECT rowid AS id, row_number() OVER (
+            PARTITION BY scene_hash ORDER BY verified DESC, pick_places, path_length_m, rowid
+        ) AS place FROM trial WHERE plan IS NOT NULL
+    ) WHERE place = 1
+)"""
+
+
+@dataclass(frozen=True)
+class SceneRecord:
+    """A scene of a study.
+
+    Attributes:
+        name: As in the tables.
+        scene: The scene; None if the study holds no plan for it, and so does not hold its geometry.
+        plan: The verified plan with the fewest pick-places, and of these the shortest; else one that did not pass
+            verification; else None.
+        statistics: None without the scene.
+    """
+
+    name: str
+    scene: Scene | None
+    plan: Plan | None
+    statistics: SceneStatistics | None
+
+
+def scene_records(folder: Path, frame: pl.DataFrame) -> Iterator[SceneRecord]:
+    """The scenes in the order of the trials `frame`, which was read from `folder`.
+
+    Raises:
+        InputError: the database is damaged.
+    """
+    cache = _Cache(folder / CACHE)
+    names = frame.group_by("scene", maintain_order=True).agg(pl.col("scene_hash").first())
+    with reading(folder) as connection:
+        plans = dict(connection.execute(_BEST).fetchall())
+        verified = set(frame.filter("solved")["scene_hash"].unique())
+    for name, hash_ in names.iter_rows():
+        plan = _plan(plans.pop(hash_, None), str(folder))
+        scene = None if plan is None or plan.scene_data is None else replace(plan.scene_data, name=name)
+        statistics = None if scene is None else cache.statistics(hash_, scene)
+        if plan is not None and statistics is not None and hash_ in verified:
+            statistics = replace(statistics, pick_places=plan.pick_places, monotone=is_monotone(plan))
+        yield SceneRecord(name, scene, plan, statistics)
+    cache.save()
+
+
+def _plan(blob: bytes | None, where: str) -> Plan | None:
+    if blob is None:
+        return None
+    try:
+        document = json.loads(zlib.decompress(blob))
+    except (zlib.error, ValueError) as error:
+        raise InputError(where, f"a stored plan is damaged: {error}") from None
+    return plan_from_document(document, where)
+
+
+class _Cache:
+    """Statistics of the geometry of scenes that earlier reports computed."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._known = _read(path)
+        self._changed = False
+
+    def statistics(self, hash_: str, scene: Scene) -> SceneStatistics | None:
+        """The statistics of a scene; None if the scene is invalid."""
+        if hash_ not in self._known:
+            try:
+                self._known[hash_] = geometry_statistics_of(scene)
+            except InputError:
+                return None
+            self._changed = True
+        return self._known[hash_]
+
+    def save(self) -> None:
+        """Writes the file if anything is new."""
+        if self._changed:
+            known = {hash_: asdict(statistics) for hash_, statistics in self._known.items()}
+            write_text(self._path, json.dumps({"version": CACHE_VERSION, "scenes": known}, indent=1) + "\n")
+
+
+def _read(path: Path) -> dict[str, SceneStatistics]:
+    """What a cache holds; nothing if it is missing, damaged or of another version, for it can be made again."""
+    try:
+        document: Any = json.loads(read_text(path))
+        if document["version"] != CACHE_VERSION:
+            return {}
+        return {hash_: SceneStatistics(**values) for hash_, values in document["scenes"].items()}
+    except (InputError, ValueError, TypeError, KeyError):
+        return {}

@@ -1,0 +1,134 @@
+"""Tables for papers: rows of texts, and how to write them as Markdown, LaTeX and CSV."""
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+_LATEX = str.maketrans(
+    {
+        "\\": r"\textbackslash{}",
+        "&": r"\&",
+        "%": r"\%",
+        "$": r"\$",
+        "#": r"\#",
+        "_": r"\_",
+        "{": r"\{",
+        "}": r"\}",
+        "~": r"\textasciitilde{}",
+        "^": r"\textasciicircum{}",
+        "±": r"$\pm$",
+        "<": r"$<$",
+        ">": r"$>$",
+        "≥": r"$\geq$",
+        "≤": r"$\leq$",
+        "∞": r"$\infty$",
+    }
+)
+
+_MARKDOWN = str.maketrans({character: "\\" + character for character in "\\`*_[]<>|~#"})
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What stands in one place of a table.
+
+    Attributes:
+        text: The text.
+        bold: Whether it is the best of its row.
+        value: What the column is sorted by; None comes last, and a column without any value is sorted by text.
+    """
+
+    text: str
+    bold: bool = False
+    value: float | None = None
+
+
+BLANK = Entry("")
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table whose first column names the rows.
+
+    Attributes:
+        name: Stem of its files.
+        title: What it shows.
+        note: How to read it.
+        columns: Heads of the columns.
+        rows: As many entries each as there are columns.
+        data: What a CSV file holds instead of the texts: heads and rows of plain values.
+    """
+
+    name: str
+    title: str
+    note: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Entry, ...], ...]
+    data: tuple[tuple[str, ...], tuple[tuple[object, ...], ...]] | None = None
+
+    def __post_init__(self) -> None:
+        if any(len(row) != len(self.columns) for row in self.rows):
+            raise ValueError(f"table {self.name!r}: a row does not have {len(self.columns)} entries")
+
+
+def as_markdown(table: Table) -> str:
+    """The table with title and note as a Markdown document."""
+    head = [_markdown_line([_markdown_text(column) for column in table.columns])]
+    head.append(_markdown_line(["---", *["---:"] * (len(table.columns) - 1)]))
+    rows = [_markdown_line([_markdown_entry(entry) for entry in row]) for row in table.rows]
+    return "\n".join([f"# {_markdown_text(table.title)}", "", table.note, "", *head, *rows, ""])
+
+
+def as_latex(table: Table) -> str:
+    """A `table*` environment in the style of the package booktabs, to be read into a paper."""
+    rows = [" & ".join(map(_latex_entry, row)) + r" \\" for row in table.rows]
+    lines = [
+        f"% {' '.join(table.title.split())}; needs \\usepackage{{booktabs}}",
+        r"\begin{table*}",
+        r"\centering",
+        rf"\caption{{{table.title.translate(_LATEX)}. {_latex_note(table.note)}}}",
+        rf"\label{{tab:{table.name}}}",
+        rf"\begin{{tabular}}{{l{'r' * (len(table.columns) - 1)}}}",
+        r"\toprule",
+        " & ".join(column.translate(_LATEX) for column in table.columns) + r" \\",
+        r"\midrule",
+        *rows,
+        r"\bottomrule",
+        r"\end{tabular}",
+        r"\end{table*}",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def as_csv(table: Table) -> str:
+    """Heads and rows, without title and note."""
+    columns, rows = table.data or (table.columns, [[entry.text for entry in row] for row in table.rows])
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(rows)
+    return file.getvalue()
+
+
+def _markdown_text(text: str) -> str:
+    return " ".join(text.translate(_MARKDOWN).split())
+
+
+def _markdown_entry(entry: Entry) -> str:
+    text = _markdown_text(entry.text)
+    return f"**{text}**" if entry.bold and text else text
+
+
+def _markdown_line(texts: Sequence[str]) -> str:
+    return "| " + " | ".join(texts) + " |"
+
+
+def _latex_entry(entry: Entry) -> str:
+    text = " ".join(entry.text.translate(_LATEX).split())
+    return rf"\textbf{{{text}}}" if entry.bold and text else text
+
+
+def _latex_note(note: str) -> str:
+    return note.replace("`", "").translate(_LATEX)

@@ -1,0 +1,171 @@
+"""Tables over all scenes: what each method achieves, and how it compares with each other one."""
+
+import math
+from functools import partial
+from itertools import combinations
+
+import numpy as np
+import polars as pl
+
+from evaluate.number_text import three_digits
+from evaluate.statistics import (
+    RESAMPLES,
+    FloatArray,
+    Statistic,
+    bootstrap_interval,
+    compare,
+    mean_time,
+    median_time,
+    par2,
+    wilson_interval,
+)
+from evaluate.table import BLANK, Entry, Table
+from evaluate.trial_frame import names_in, planning_times
+
+LARGE = 5_000
+"""Runs of a method from which on fewer bootstrap samples will do."""
+
+SAMPLES_OF_LARGE = 200
+
+MAX_COMPARED = 12
+"""Methods that are compared in pairs; more would make a table that nobody reads."""
+
+
+def methods_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table:
+    """Success, times and plans of every method over all scenes.
+
+    Args:
+        frame: As `evaluate.trial_frame.read_trials` gives it.
+        rng: Source of the bootstrap samples.
+    """
+    times, limit = planning_times(frame), time_limit(frame)
+    totals = frame.group_by("method").agg(
+        pl.len(),
+        pl.col("solved").sum().alias("n_solved"),
+        pl.col("accepted").sum().alias("n_accepted"),
+        pl.col("accepted").count().alias("n_asked"),
+        pl.col("pick_places").filter("solved").mean(),
+        pl.col("path_length_m").filter("solved").mean(),
+    )
+    by_method = {row["method"]: row for row in totals.iter_rows(named=True)}
+    rows = []
+    for method in names_in(frame, "method"):
+        total, matrix = by_method[method], times[method]
+        low, high = wilson_interval(total["n_solved"], total["len"])
+        rate = total["n_solved"] / total["len"]
+        rows.append(
+            (
+                Entry(method),
+                Entry(f"{total['n_solved']}/{total['len']}", value=rate),
+                Entry(f"{percent(rate)} ({percent(low)} to {percent(high)})", value=rate),
+                Entry(f"{total['n_accepted']}", value=total["n_accepted"]) if total["n_asked"] else BLANK,
+                _interval_entry(matrix, mean_time, rng),
+                _interval_entry(matrix, median_time, rng),
+                _interval_entry(matrix, partial(par2, limit=limit), rng),
+                _plain_entry(total["pick_places"]),
+                _plain_entry(total["path_length_m"]),
+            )
+        )
+    columns = (
+        "method",
+        "solved",
+        "solved [%]",
+        "accepted",
+        "mean [s]",
+        "median [s]",
+        "PAR2 [s]",
+        "pick-places",
+        "path [m]",
+    )
+    note = (
+        "Solved: runs whose plan passes the independent verification, with the 95 % Wilson interval. Accepted: runs "
+        "that the method itself takes for solved, where it has a criterion of its own. Mean time, pick-places and path "
+        "over the solved runs; median over all runs; PAR2: mean over all runs, an unsolved one counts twice the time "
+        f"limit of {limit:g} s. Intervals of times: 95 %, bootstrap over {_unit(times)}."
+    )
+    return Table("methods", "Methods over all scenes", note, columns, tuple(rows))
+
+
+def comparison_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table | None:
+    """Every pair of methods on the same scenes and seeds; None if no two methods share any."""
+    times, limit = planning_times(frame), time_limit(frame)
+    rows = []
+    for first, second in combinations(names_in(frame, "method")[:MAX_COMPARED], 2):
+        found = compare(times[first], times[second], limit, rng, resamples=_resamples(times[first]))
+        if not found.pairs:
+            continue
+        low, high = found.interval
+        rows.append(
+            (
+                Entry(f"{first} vs. {second}"),
+                Entry(str(found.pairs), value=found.pairs),
+                *(Entry(str(n), value=n) for n in (found.wins, found.ties, found.losses)),
+                Entry(" / ".join(map(str, found.scenes)), value=found.scenes[0]),
+                Entry(
+                    f"{_signed(found.difference)} ({_signed(low)} to {_signed(high)})",
+                    bold=low > 0 or high < 0,
+                    value=found.difference,
+                ),
+            )
+        )
+    if not rows:
+        return None
+    columns = ("methods", "runs", "wins", "ties", "losses", "scenes won / tied / lost", "difference [s]")
+    note = (
+        "The first method against the second on the same scenes and seeds. A run is won by the method that alone "
+        "solves it, or is more than 10 % faster; a scene by mean PAR2. Difference: PAR2 of the first less that of the "
+        "second, mean over the scenes; negative favours the first; 95 % bootstrap interval over scenes (over runs if "
+        "there is one scene), bold if it does not contain 0."
+    )
+    return Table("comparisons", "Pairs of methods", note, columns, tuple(rows))
+
+
+def time_limit(frame: pl.DataFrame) -> float:
+    """The largest time limit of the trials [s]; the longest time where methods tell none."""
+    limits = [frame["time_limit"].max(), frame["time_s"].max()]
+    return float(next((v for v in limits if isinstance(v, int | float)), 0.0))
+
+
+def percent(share: float) -> str:
+    """A share as a percentage; what is not all is never rounded to 100 %, nor something to 0 %."""
+    value = 100 * share
+    if 99.95 <= value < 100:
+        return "99.9%"
+    if 0 < value < 0.05:
+        return "0.1%"
+    return f"{value:.0f}%" if value in {0.0, 100.0} else f"{value:.1f}%"
+
+
+def _interval_entry(matrix: FloatArray, statistic: Statistic, rng: np.random.Generator) -> Entry:
+    value = statistic(matrix)
+    if math.isnan(value):
+        return Entry("-")
+    low, high = bootstrap_interval(
+        matrix,
+        statistic,
+        rng,
+        resampled="scenes" if matrix.shape[1] > 1 else "runs",
+        resamples=_resamples(matrix),
+    )
+    text = f"{_seconds(value)} ({_seconds(low)} to {_seconds(high)})"
+    return Entry(text, value=value if math.isfinite(value) else None)
+
+
+def _unit(times: dict[str, FloatArray]) -> str:
+    return "scenes" if next(iter(times.values())).shape[1] > 1 else "runs"
+
+
+def _resamples(matrix: FloatArray) -> int:
+    return RESAMPLES if matrix.size < LARGE else SAMPLES_OF_LARGE
+
+
+def _seconds(value: float) -> str:
+    return three_digits(value) if math.isfinite(value) else "∞"
+
+
+def _signed(value: float) -> str:
+    return ("+" if value > 0 else "") + three_digits(value) if math.isfinite(value) else "∞"
+
+
+def _plain_entry(value: float | None) -> Entry:
+    return Entry("-") if value is None else Entry(f"{value:.1f}", value=value)

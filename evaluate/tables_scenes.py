@@ -1,0 +1,171 @@
+"""Tables with one row a scene and columns for each method: Table I of the paper, and the plans' lengths."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import polars as pl
+
+from evaluate.number_text import three_digits
+from evaluate.published import TIME_COLUMNS, PublishedTime, scene_key
+from evaluate.table import BLANK, Entry, Table
+from evaluate.trial_frame import names_in
+
+PAPER = "(paper)"
+"""Behind a method's name: the column of its published numbers."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The trials of one method on one scene; means are over the solved ones, None without any.
+
+    Attributes:
+        trials: How many there were.
+        solved: How many ended with a verified plan.
+        mean: Planning time [s].
+        deviation: Its sample standard deviation [s], 0 for one trial.
+        net_mean: Mean planning time without computing subgoals [s]; None for methods that do not tell.
+        pick_places: Mean number of pick-places.
+        path_length: Mean way of the agent [m].
+    """
+
+    trials: int
+    solved: int
+    mean: float | None
+    deviation: float | None
+    net_mean: float | None
+    pick_places: float | None
+    path_length: float | None
+
+    @property
+    def percent(self) -> float:
+        """Share of trials solved, 0..100."""
+        return 100 * self.solved / self.trials
+
+
+Summaries = Mapping[tuple[str, str], Summary]
+"""By scene and method."""
+
+
+def summaries(frame: pl.DataFrame) -> dict[tuple[str, str], Summary]:
+    """What happened for each scene and method of the trials (`evaluate.trial_frame.read_trials`)."""
+    solved = pl.col("solved")
+    grouped = frame.group_by("scene", "method", maintain_order=True).agg(
+        pl.len(),
+        solved.sum().alias("n_solved"),
+        pl.col("time_s").filter(solved).mean(),
+        pl.col("time_s").filter(solved).std().alias("deviation"),
+        (pl.col("time_s") - pl.col("subgoal_time_s")).filter(solved).mean().alias("net"),
+        pl.col("pick_places").filter(solved).mean(),
+        pl.col("path_length_m").filter(solved).mean(),
+    )
+    return {
+        (scene, method): Summary(trials, n, mean, 0.0 if n == 1 else deviation, net, pick_places, length)
+        for scene, method, trials, n, mean, deviation, net, pick_places, length in grouped.iter_rows()
+    }
+
+
+def times_table(frame: pl.DataFrame, published: Mapping[tuple[str, str], PublishedTime] | None = None) -> Table:
+    """Table I: planning times of every method on every scene, optionally with published ones beside them."""
+    cells, scenes, methods = summaries(frame), names_in(frame, "scene"), names_in(frame, "method")
+    beside = published or {}
+    known = {method for scene in scenes for name, method in beside if name == scene_key(scene)}
+    heads = [head for method in methods for head in ([method, f"{method} {PAPER}"] if method in known else [method])]
+    rows = []
+    for scene in scenes:
+        best = _best(scene, methods, cells)
+        row = [Entry(scene)]
+        for method in methods:
+            row.append(_time_entry(method, cells.get((scene, method)), bold=method in best))
+            if method in known:
+                row.append(_published_entry(beside.get((scene_key(scene), method))))
+        rows.append(tuple(row))
+    paper = " Columns marked (paper): published numbers, on other machines." if known else ""
+    note = (
+        "Planning time [s], mean (standard deviation) over the solved runs, and the percentage of runs solved where it "
+        "is below 100; - where none is solved, nothing where none was run. In square brackets the mean without "
+        "computing subgoals. A run is solved if its plan passes the independent verification. Bold: the largest share "
+        f"solved, and of these the least mean.{paper}"
+    )
+    title = "Planning times by scene and method"
+    return Table("times", title, note, ("scene", *heads), tuple(rows), _times_data(scenes, methods, cells))
+
+
+def plans_table(frame: pl.DataFrame) -> Table:
+    """Pick-places and way of the agent of every method on every scene."""
+    cells, scenes, methods = summaries(frame), names_in(frame, "scene"), names_in(frame, "method")
+    heads = [f"{method} {what}" for method in methods for what in ("pick-places", "path [m]")]
+    rows = []
+    for scene in scenes:
+        of_scene = [cells.get((scene, method)) for method in methods]
+        values = [v for cell in of_scene for v in ((cell.pick_places, cell.path_length) if cell else (None, None))]
+        shown = [cell is not None for cell in of_scene for _ in range(2)]
+        least = [min((v for v in values[i::2] if v is not None), default=math.inf) for i in range(2)]
+        entries = [
+            _mean_entry(value, bold=value is not None and _same(value, least[i % 2])) if shown[i] else BLANK
+            for i, value in enumerate(values)
+        ]
+        rows.append((Entry(scene), *entries))
+    note = "Means over the solved runs; - where none is solved. Bold: the least of the row."
+    return Table("plans", "Plans by scene and method", note, ("scene", *heads), tuple(rows))
+
+
+def time_text(cell: Summary, *, net: bool = False) -> str:
+    """`mean (deviation)`, with the net time in brackets if wanted, and the percentage solved if it is below 100."""
+    if cell.mean is None or cell.deviation is None:
+        return "-"
+    brackets = f" [{three_digits(cell.net_mean)}]" if net and cell.net_mean is not None else ""
+    # 99.97 % must not be rounded to 100 %.
+    share = "" if cell.solved == cell.trials else f" {min(cell.percent, 99.9):.3g}%"
+    return f"{three_digits(cell.mean)} ({three_digits(cell.deviation)}){brackets}{share}"
+
+
+def _time_entry(method: str, cell: Summary | None, *, bold: bool) -> Entry:
+    if cell is None:
+        return BLANK
+    return Entry(time_text(cell, net=method.startswith("Btl")), bold, cell.mean)
+
+
+def _published_entry(published: PublishedTime | None) -> Entry:
+    if published is None:
+        return BLANK
+    if published.mean is None:
+        return Entry("-")
+    deviation = "" if published.deviation is None else f" ({published.deviation:g})"
+    net = published.mean_without_subgoals
+    brackets = "" if net is None else f" [{net:g}]"
+    share = "" if published.percent == 100 else f" {published.percent:g}%"
+    return Entry(f"{published.mean:g}{deviation}{brackets}{share}", value=published.mean)
+
+
+def _best(scene: str, methods: Sequence[str], cells: Summaries) -> set[str]:
+    """The methods that are shown as the best of a scene; none if there is nothing to compare."""
+    ran = {method: cells[scene, method] for method in methods if (scene, method) in cells}
+    solved = {method: cell for method, cell in ran.items() if cell.mean is not None}
+    if len(ran) < 2 or not solved:
+        return set()
+    most = max(cell.percent for cell in solved.values())
+    means = {method: cell.mean or 0.0 for method, cell in solved.items() if cell.percent == most}
+    least = min(means.values())
+    return {method for method, value in means.items() if three_digits(value) == three_digits(least)}
+
+
+def _mean_entry(value: float | None, *, bold: bool) -> Entry:
+    return Entry("-") if value is None else Entry(f"{value:.1f}", bold, value)
+
+
+def _same(a: float, b: float) -> bool:
+    return f"{a:.1f}" == f"{b:.1f}"
+
+
+def _times_data(
+    scenes: Sequence[str], methods: Sequence[str], cells: Summaries
+) -> tuple[tuple[str, ...], tuple[tuple[object, ...], ...]]:
+    """The numbers in the format of published tables, so that one study can stand beside another."""
+    rows = []
+    for scene in scenes:
+        for method in methods:
+            if (cell := cells.get((scene, method))) is not None:
+                net = cell.net_mean if method.startswith("Btl") else None
+                rows.append((scene, method, cell.mean, cell.deviation, cell.percent, net))
+    return TIME_COLUMNS, tuple(rows)
