@@ -86,6 +86,11 @@ Tolerance = Annotated[
 ]
 
 
+def _asked(metavar: str, text: str, default: str, **limits: float) -> Any:
+    """An option of `generate` whose default is that of the agent."""
+    return typer.Option(metavar=metavar, help=text, show_default=default, **cast("Any", limits))
+
+
 def main() -> None:
     """Entry point of the `manipuzzle` program."""
     for stream in (sys.stdout, sys.stderr):
@@ -113,26 +118,66 @@ def manipuzzle(
 def generate(
     *,
     out: Out,
-    agent: Annotated[str, typer.Option(metavar="NAME", help="What proposes levels: random.")] = "random",
+    agent: Annotated[
+        str, typer.Option(metavar="NAME", help="What proposes levels: random, or m0 ... m35 of data/agents.yaml.")
+    ] = "random",
     count: Annotated[int, typer.Option(metavar="N", min=1, help="Number of levels.")] = 10,
     seed: Seed = 0,
-    rows: Annotated[int, typer.Option(metavar="N", min=1, max=100, help="Inner rows.")] = 10,
-    columns: Annotated[int, typer.Option(metavar="N", min=1, max=100, help="Inner columns.")] = 10,
-    crates: Annotated[int, typer.Option(metavar="N", min=1, help="Crates of a level.")] = 2,
-    targets: Annotated[int, typer.Option(metavar="N", min=1, help="Targets of a level.")] = 1,
+    rows: Annotated[int | None, _asked("N", "Inner rows.", "10", min=1, max=100)] = None,
+    columns: Annotated[int | None, _asked("N", "Inner columns.", "10", min=1, max=100)] = None,
+    crates: Annotated[int | None, _asked("N", "Crates of a level.", "2", min=1)] = None,
+    targets: Annotated[int | None, _asked("N", "Targets of a level.", "1", min=1)] = None,
     min_pushes: Annotated[
-        int, typer.Option(metavar="N", min=0, help="Pushes that the shortest solution needs at least.")
-    ] = 3,
+        int | None, _asked("N", "Pushes that the shortest solution needs at least.", "3, or the agent's", min=0)
+    ] = None,
+    max_pushes: Annotated[int | None, _asked("N", "Pushes at most.", "any, or the agent's", min=0)] = None,
+    min_density: Annotated[
+        float | None, _asked("SHARE", "Walls by inner cells at least.", "0.05, or the agent's", min=0, max=1)
+    ] = None,
+    max_density: Annotated[
+        float | None, _asked("SHARE", "Walls by inner cells at most.", "0.3, or the agent's", min=0, max=1)
+    ] = None,
+    occluded: Annotated[
+        bool | None,
+        typer.Option(
+            "--occluded/--visible", help="Whether the player sees the goal crate; by default both.", show_default=False
+        ),
+    ] = None,
+    dependency: Annotated[
+        bool | None,
+        typer.Option(
+            "--dependency/--no-dependency",
+            help="Whether another crate has to move first; by default both.",
+            show_default=False,
+        ),
+    ] = None,
+    frozen: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Tiles to keep: a level in XSB text with ? for open cells.", show_default=False
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Generate solvable levels as a level set: levels.xsb and manifest.jsonl.
 
     Example:  manipuzzle generate --agent random --count 10 --seed 0 --out out/levels
     """
-    from evaluate.commands.generate import run, settings_of
+    from evaluate.commands.generate import request_of, run
 
-    settings = settings_of(rows=rows, columns=columns, crates=crates, targets=targets, min_pushes=min_pushes)
-    _exit(run(agent, count, seed, settings, out, as_json=json))
+    request = request_of(
+        agent,
+        frozen,
+        rows=rows,
+        columns=columns,
+        crates=crates,
+        targets=targets,
+        pushes=(min_pushes, max_pushes),
+        wall_density=(min_density, max_density),
+        occluded=occluded,
+        dependency=dependency,
+    )
+    _exit(run(agent, count, seed, request, out, as_json=json))
 
 
 @app.command(short_help="Report on levels: solvable, statistics, duplicates.")

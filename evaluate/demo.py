@@ -16,7 +16,7 @@ from evaluate.output import print_line, print_table
 from evaluate.trial import warm_up
 from pcg.data_folder import data_folder
 from pcg.errors import InputError
-from pcg.generate import GeneratorSettings
+from pcg.request import Request
 from pcg.level_set import manifest_entry
 from planner import Settings, settings_for
 
@@ -61,7 +61,7 @@ def run(out: Path, puzzles: Sequence[Path], levels: int = LEVELS, time_limit: fl
 
 def _levels(out: Path, count: int, settings: Settings) -> None:
     rows = []
-    for generated in generate(count, SEED, GeneratorSettings(), out / "levels"):
+    for generated in generate(count, SEED, Request(), out / "levels"):
         level, entry = generated.level, manifest_entry(generated)
         level_painter(level)(out / "levels" / f"{level.name}.png")
         scene = scene_of(level)

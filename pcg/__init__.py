@@ -5,8 +5,10 @@ number of pushes, `random_levels` makes new ones and `write_level_set` keeps the
 needs NumPy and Pydantic only.
 """
 
+from pcg.dependency import has_dependency
 from pcg.errors import InputError
-from pcg.generate import GeneratorSettings, Rejection, generate_random, random_levels
+from pcg.frozen import FrozenTiles, read_frozen
+from pcg.generate import generate_random, generated_levels, random_levels
 from pcg.level import Level, Tile
 from pcg.level_set import (
     GeneratedLevel,
@@ -17,24 +19,30 @@ from pcg.level_set import (
     write_level_set,
 )
 from pcg.metrics import LevelStatistics, occluded, statistics
+from pcg.random_source import RandomSource
 from pcg.report import LevelReport, LevelsSummary, report_levels, summarise
+from pcg.request import LevelSource, Proposal, Rejection, Request
 from pcg.sokoban import IllegalMoveError, apply_moves, is_solved
 from pcg.solver import Solution, SolverStatus, goal_crate_of, solve
 from pcg.symmetry import canonical, content_hash, symmetries, tiles_hash
 from pcg.xsb import format_level, parse_levels, read_levels, write_levels
 
 __all__ = [
+    "FrozenTiles",
     "GeneratedLevel",
-    "GeneratorSettings",
     "IllegalMoveError",
     "InputError",
     "Level",
     "LevelReport",
     "LevelSet",
+    "LevelSource",
     "LevelStatistics",
     "LevelsSummary",
     "ManifestEntry",
+    "Proposal",
+    "RandomSource",
     "Rejection",
+    "Request",
     "Solution",
     "SolverStatus",
     "Tile",
@@ -43,11 +51,14 @@ __all__ = [
     "content_hash",
     "format_level",
     "generate_random",
+    "generated_levels",
     "goal_crate_of",
+    "has_dependency",
     "is_solved",
     "occluded",
     "parse_levels",
     "random_levels",
+    "read_frozen",
     "read_level_set",
     "read_levels",
     "read_manifest",

@@ -13,17 +13,21 @@ from typing import Literal
 
 from pydantic import Field
 
+from pcg.dependency import has_dependency, movable_critical
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
 from pcg.level import Level
 from pcg.metrics import LevelStatistics, occluded, statistics
-from pcg.solver import Solution, goal_crate_of
+from pcg.solver import Solution, goal_crate_of, solve
+from pcg.swept_disc import disc_occluded
 from pcg.symmetry import content_hash, tiles_hash
 from pcg.validation import Document, validated
 from pcg.xsb import read_levels, write_levels
 
 LEVELS_FILE = "levels.xsb"
 MANIFEST_FILE = "manifest.jsonl"
+
+Split = Literal["train", "test"]
 
 
 @dataclass(frozen=True)
@@ -36,8 +40,11 @@ class GeneratedLevel:
         agent: Name of the generator.
         seed: Seed of the run that made it.
         representation: Of a learned agent, how it edits levels (narrow, turtle, wide).
+        weights_hash: Of a learned agent, the hash of its weights.
         control_targets: What was asked of the generator for this level, by name.
         rejected: Attempts thrown away before this level was found, by reason.
+        steps: Edits of tiles in all of these attempts and in the one that gave the level.
+        split: Of a corpus, the part that the level belongs to.
     """
 
     level: Level
@@ -47,6 +54,9 @@ class GeneratedLevel:
     representation: str | None = None
     control_targets: Mapping[str, float] = field(default_factory=dict)
     rejected: Mapping[str, int] = field(default_factory=dict)
+    steps: int = 0
+    weights_hash: str | None = None
+    split: Split | None = None
 
 
 @dataclass(frozen=True)
@@ -73,10 +83,20 @@ class ManifestEntry(Document):
         agent: Name of the generator.
         seed: Seed of the run that made it.
         representation: Of a learned agent, how it edits levels (narrow, turtle, wide).
+        weights_hash: Of a learned agent, the hash of its weights.
         control_targets: What was asked of the generator for this level, by name.
+        rejected: Attempts thrown away before this level was found, by reason.
+        steps: Edits of tiles in all of these attempts and in the one that gave the level.
+        split: Of a corpus, the part that the level belongs to: train or test.
         statistics: What the level holds.
         occluded: Whether a wall or another crate hides the goal crate from the player.
-        solvable: Whether Sokoban pushes solve it; null if the solver gave up.
+        disc_occluded: Whether they are in the way of a robot that drives straight to the goal crate.
+        dependency: Whether another crate has to move before the goal crate can reach its target; null if the solver
+            gave up, or the level is not solvable.
+        movable_critical: Whether the goal crate reaches its target if the other crates are ignored, and does not if they
+            are walls; null if the solver gave up.
+        solvable: Whether Sokoban pushes bring the goal crate to its target; null if the solver gave up.
+        solvable_by_any: Whether they do if any crate may go to the target; null likewise.
         pushes: Least number of pushes, null without a solution; the next two likewise.
         moves: Length of the solution.
         solution: The solution in LURD notation.
@@ -90,10 +110,18 @@ class ManifestEntry(Document):
     agent: str
     seed: int
     representation: str | None = None
+    weights_hash: str | None = None
     control_targets: dict[str, float] = Field(default_factory=dict)
+    rejected: dict[str, int] = Field(default_factory=dict)
+    steps: int = 0
+    split: Split | None = None
     statistics: LevelStatistics
     occluded: bool
+    disc_occluded: bool | None = None
+    dependency: bool | None = None
+    movable_critical: bool | None = None
     solvable: bool | None
+    solvable_by_any: bool | None = None
     pushes: int | None = None
     moves: int | None = None
     solution: str | None = None
@@ -106,15 +134,24 @@ def manifest_entry(generated: GeneratedLevel) -> ManifestEntry:
     """What the manifest says about a level."""
     level, solution = generated.level, generated.solution
     goal_crate = goal_crate_of(level, solution)
+    level = replace(level, goal_crate=goal_crate)
     return ManifestEntry(
         name=level.name,
         agent=generated.agent,
         seed=generated.seed,
         representation=generated.representation,
+        weights_hash=generated.weights_hash,
         control_targets=dict(generated.control_targets),
+        rejected=dict(generated.rejected),
+        steps=generated.steps,
+        split=generated.split,
         statistics=statistics(level),
         occluded=occluded(level, goal_crate),
+        disc_occluded=disc_occluded(level, goal_crate),
+        dependency=has_dependency(level) if solution.solved else None,
+        movable_critical=movable_critical(level),
         solvable=solution.solvable,
+        solvable_by_any=solve(replace(level, goal_crate=None)).solvable,
         pushes=solution.pushes,
         moves=solution.moves,
         solution=solution.lurd,

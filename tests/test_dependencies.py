@@ -25,6 +25,7 @@ HOMES = {
     "cv2": {"converter/raster.py", "converter/image_file.py"},
     "jinja2": {"converter/viewer_page.py"},
     "numba": {
+        "pcg/random_kernel.py",
         "pcg/solver_kernel.py",
         "planner/kernel.py",
         "planner/rrt_connect.py",
@@ -38,7 +39,7 @@ HOMES = {
     "scipy": {"planner/subgoals_bottleneck.py"},
     "shapely": {"evaluate/bench_peers.py", "planner/penetration.py"},
     "typer": {"evaluate/cli.py"},
-    "yaml": {"converter/formats/yaml_text.py"},
+    "yaml": {"pcg/yaml_text.py"},
 }
 """The only modules that import a library."""
 

@@ -23,7 +23,7 @@ from converter.plan import Plan, read_plan, write_plan
 from converter.scene import Scene
 from evaluate.cli import app
 from evaluate.store import FILE_NAME
-from pcg.generate import GeneratorSettings
+from pcg.request import Request
 from planner import METHODS
 from planner import PRESETS as SETTINGS
 
@@ -296,7 +296,7 @@ BAD_INPUT = {
     "unknown method": (["solve", "room.yaml", "--out", "o", "--method", "X"], "method: found 'X', allowed are Rnd+FPR"),
     "unknown settings": (["solve", "room.yaml", "--out", "o", "--settings", "X"], "settings: found 'X', allowed are fast"),
     "unknown preset": (["convert", "levels.txt", "--out", "o", "--preset", "X"], "--preset: found 'X', allowed are "),
-    "unknown agent": (["generate", "--out", "o", "--agent", "m3"], "--agent: found 'm3', allowed are random"),
+    "unknown agent": (["generate", "--out", "o", "--agent", "m36"], "--agent: found 'm36', allowed are random, m0 ... m35"),
     "unknown scene format": (["convert", "room.yaml", "--out", "o", "--to", "g"], "--to: found 'g', allowed are yaml"),
     "unknown picture format": (["render", "room.yaml", "--out", "o", "--format", "svg"], "--format: found 'svg', allowed are png, gif"),
     "animated scene": (["render", "room.yaml", "--out", "o", "--format", "gif"], "room.yaml: gif shows plans in motion"),
@@ -359,10 +359,10 @@ def test_help_says_what_is_true(run: Run):
         assert f"Example:  manipuzzle {command}" in run(command, "--help").stdout
     solve, generate = (" ".join(run(command, "--help").stdout.split()) for command in ("solve", "generate"))
     assert all(name in solve for name in (*METHODS, *SETTINGS))
-    defaults = GeneratorSettings()
-    for name in ("rows", "columns", "crates", "targets", "min-pushes"):
-        value = getattr(defaults, name.replace("-", "_"))
-        assert re.search(rf"--{name} N [^[]*\[default: {value};", generate)
+    defaults = Request()
+    values = {name: getattr(defaults, name) for name in ("rows", "columns", "crates", "targets")}
+    for name, value in {**values, "min-pushes": defaults.pushes[0]}.items():
+        assert re.search(rf"--{name} N [^[]*\[default: \({value}\b", generate)
 
 
 def test_version_and_bare_call(run: Run):

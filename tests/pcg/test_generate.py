@@ -4,9 +4,11 @@ from itertools import islice
 import pytest
 
 from pcg.errors import InputError
-from pcg.generate import GeneratorSettings, Rejection, generate_random, random_levels
+from pcg.generate import generate_random, generated_levels, random_levels
 from pcg.level_set import GeneratedLevel
 from pcg.metrics import statistics
+from pcg.random_source import RandomSource
+from pcg.request import Rejection, Request
 from pcg.sokoban import apply_moves, is_solved
 from pcg.symmetry import content_hash
 
@@ -15,16 +17,16 @@ LEVELS = generate_random(20, seed=3).levels
 
 def test_levels_are_what_was_asked_for():
     """Size, numbers, density, one region and pushes are as in the settings, and the recorded solution is one."""
-    settings = GeneratorSettings()
+    request = Request()
     for generated in LEVELS:
         counted = statistics(generated.level)
         assert (counted.rows, counted.columns) == (10, 10)
         assert (counted.players, counted.crates, counted.targets, counted.regions) == (1, 2, 1, 1)
         assert counted.walls == round(100 * generated.control_targets["wall_density"])
-        assert settings.wall_density[0] - 0.005 <= counted.wall_density <= settings.wall_density[1] + 0.005
+        assert request.wall_density[0] - 0.005 <= counted.wall_density <= request.wall_density[1] + 0.005
         assert generated.solution.pushes is not None
         assert generated.solution.lurd is not None
-        assert generated.solution.pushes >= settings.min_pushes
+        assert generated.solution.pushes >= request.pushes[0]
         # Replayed with the goal crate named: it has to be the one on the target.
         assert generated.level.goal_crate is not None
         assert is_solved(apply_moves(generated.level, generated.solution.lurd))
@@ -59,18 +61,16 @@ def test_rejected_attempts_are_counted():
 
 def test_symmetric_levels_are_rejected():
     """A corridor of five cells has ten levels of one crate, C(5, 3) for player, crate and target in that order."""
-    corridor = GeneratorSettings(
-        rows=1, columns=5, crates=1, targets=1, wall_density=(0, 0), min_pushes=1, max_attempts=500
-    )
+    corridor = Request(rows=1, columns=5, crates=1, targets=1, wall_density=(0, 0), pushes=(1, 100))
     found: list[GeneratedLevel] = []
-    with pytest.raises(InputError, match=r"no level in 500 attempts \(.*duplicate"):
-        found.extend(random_levels(0, corridor))
+    with pytest.raises(InputError, match=r"no level in \d+ attempts \(.*duplicate"):
+        found.extend(random_levels(0, corridor, max_attempts=500))
     assert len(found) == 10
 
 
 def test_other_shapes_and_numbers():
     """Rows and columns are not exchanged, and several targets are allowed."""
-    settings = GeneratorSettings(rows=5, columns=8, crates=3, targets=2, min_pushes=1)
+    settings = Request(rows=5, columns=8, crates=3, targets=2, pushes=(1, 100))
     level = next(random_levels(0, settings)).level
     assert level.shape == (5, 8)
     assert (len(level.crates), len(level.targets)) == (3, 2)
@@ -92,20 +92,21 @@ def test_progress_counts_finished_levels():
         ({"wall_density": (0.3, 0.2)}, "range"),
         ({"wall_density": (0.3, 1.2)}, "range"),
         ({"rows": 1, "columns": 3}, "cannot hold 4 things"),
+        ({"pushes": (5, 3)}, "range"),
     ],
 )
 def test_settings_that_make_no_sense_are_refused(changes: dict[str, object], problem: str):
     """The message names the setting."""
     with pytest.raises(ValueError, match=problem):
-        replace(GeneratorSettings(), **changes)
+        replace(Request(), **changes)
 
 
 @pytest.mark.parametrize(
-    ("changes", "reason"),
-    [({"wall_density": (1, 1)}, "5 walls"), ({"min_pushes": 1000}, "easy"), ({"max_states": 1}, "undecided")],
+    ("changes", "max_states", "reason"),
+    [({"wall_density": (1, 1)}, None, "walls"), ({"pushes": (1000, 2000)}, None, "easy"), ({}, 1, "undecided")],
 )
-def test_hopeless_settings_end_with_the_reasons(changes: dict[str, object], reason: str):
+def test_hopeless_requests_end_with_the_reasons(changes: dict[str, object], max_states: int | None, reason: str):
     """After `max_attempts` the generator gives up with one line that counts the reasons."""
-    settings = replace(GeneratorSettings(max_attempts=5), **changes)
-    with pytest.raises(InputError, match=f"no level in 5 attempts .*{reason}"):
-        next(random_levels(0, settings))
+    request = replace(Request(), **changes)
+    with pytest.raises(InputError, match=rf"no level in 100 attempts .*\d+ {reason}"):
+        next(generated_levels(RandomSource(max_states), request, 0, max_attempts=5))

@@ -16,7 +16,7 @@ from pcg.xsb import write_levels
 
 # Two crates can reach the target; the recorded goal crate is not the one that the solver would choose.
 LEVEL = Level(np.array([[3, 0, 2, 0], [0, 0, 0, 0], [0, 3, 4, 0]]), "a", (2, 1))
-GENERATED = GeneratedLevel(LEVEL, solve(LEVEL), "m3", 5, "narrow", {"pushes": 8.0}, {"easy": 2})
+GENERATED = GeneratedLevel(LEVEL, solve(LEVEL), "m3", 5, "narrow", {"pushes": 8.0}, {"easy": 2}, steps=40)
 
 
 def test_a_level_set_is_read_back_as_written(tmp_path: Path):
@@ -39,7 +39,11 @@ def test_a_manifest_line_by_hand(tmp_path: Path):
         "agent": "m3",
         "seed": 5,
         "representation": "narrow",
+        "weights_hash": None,
         "control_targets": {"pushes": 8.0},
+        "rejected": {"easy": 2},
+        "steps": 40,
+        "split": None,
         "statistics": {
             "rows": 3,
             "columns": 4,
@@ -51,7 +55,11 @@ def test_a_manifest_line_by_hand(tmp_path: Path):
             "wall_density": 0.0,
         },
         "occluded": False,
+        "disc_occluded": False,
+        "dependency": False,
+        "movable_critical": False,
         "solvable": True,
+        "solvable_by_any": True,
         "pushes": 1,
         "moves": 5,
         "solution": "ldldR",
