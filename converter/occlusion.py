@@ -31,7 +31,9 @@ def body_blocks(body: Body, start: FloatArray, end: FloatArray) -> bool:
     """Whether the segment from `start` to `end`, both (2,) [m] in the world, meets the interior of the body."""
     for core, part in zip(body.cores, body.parts, strict=True):
         polygon = core + body.position[:2]
-        if _enters(start, end, polygon) or _distance(start, end, polygon) < part.edge_radius - NUMERIC_SLACK:
+        if _enters(start, end, polygon):
+            return True
+        if part.edge_radius > 0 and _distance(start, end, polygon) < part.edge_radius - NUMERIC_SLACK:
             return True
     return False
 

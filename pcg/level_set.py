@@ -6,7 +6,7 @@ fields. XSB cannot say which crate has to reach the goal, the manifest can: whoe
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
@@ -16,13 +16,14 @@ from pydantic import Field
 from pcg.dependency import has_dependency, movable_critical
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
+from pcg.grid import Cell
 from pcg.level import Level
 from pcg.metrics import LevelStatistics, occluded, statistics
 from pcg.solver import Solution, goal_crate_of, solve
 from pcg.swept_disc import disc_occluded
 from pcg.symmetry import content_hash, tiles_hash
 from pcg.validation import Document, validated
-from pcg.xsb import read_levels, write_levels
+from pcg.xsb import iter_levels, write_levels
 
 LEVELS_FILE = "levels.xsb"
 MANIFEST_FILE = "manifest.jsonl"
@@ -185,13 +186,27 @@ def read_level_set(path: Path) -> list[Level]:
     Raises:
         InputError: naming file, line and reason.
     """
+    return list(iter_level_set(path))
+
+
+def iter_level_set(path: Path) -> Iterator[Level]:
+    """The levels of `read_level_set` one by one; of the manifest only goal crates and hashes are held.
+
+    Raises:
+        InputError: naming file, line and reason, when that line is reached.
+    """
     levels_path = path / LEVELS_FILE if path.is_dir() else path
-    levels = read_levels(levels_path)
     manifest_path = levels_path.parent / MANIFEST_FILE
-    if not manifest_path.exists():
-        return levels
-    entries = {entry.name: entry for entry in read_manifest(manifest_path)}
-    return [_with_recorded_goal(level, entries.get(level.name), manifest_path) for level in levels]
+    recorded = _recorded_goals(manifest_path) if manifest_path.exists() else {}
+    for level in iter_levels(levels_path):
+        goal_crate, expected_hash = recorded.get(level.name, (None, None))
+        if expected_hash != tiles_hash(level):
+            yield level
+            continue
+        try:
+            yield replace(level, goal_crate=goal_crate)
+        except ValueError as error:
+            raise InputError(str(manifest_path), f"level {level.name!r}: goal_crate: {error}") from None
 
 
 def read_manifest(path: Path) -> list[ManifestEntry]:
@@ -200,7 +215,16 @@ def read_manifest(path: Path) -> list[ManifestEntry]:
     Raises:
         InputError: naming file, line, field and reason; also if two lines name the same level.
     """
-    entries: dict[str, ManifestEntry] = {}
+    return list(_entries(path))
+
+
+def _recorded_goals(path: Path) -> dict[str, tuple[Cell, str]]:
+    """Goal crate of each level by name, and the hash of the tiles for which it holds."""
+    return {entry.name: (entry.goal_crate, entry.tiles_hash) for entry in _entries(path)}
+
+
+def _entries(path: Path) -> Iterator[ManifestEntry]:
+    names: set[str] = set()
     for number, line in enumerate(read_text(path).split("\n"), start=1):
         if not line.strip():
             continue
@@ -210,16 +234,7 @@ def read_manifest(path: Path) -> list[ManifestEntry]:
         except (ValueError, RecursionError) as error:
             raise InputError(where, f"not JSON: {error}") from None
         entry = validated(ManifestEntry, document, where)
-        if entry.name in entries:
+        if entry.name in names:
             raise InputError(where, f"name: a line before names the level {entry.name!r} too")
-        entries[entry.name] = entry
-    return list(entries.values())
-
-
-def _with_recorded_goal(level: Level, entry: ManifestEntry | None, manifest: Path) -> Level:
-    if entry is None or entry.tiles_hash != tiles_hash(level):
-        return level
-    try:
-        return replace(level, goal_crate=entry.goal_crate)
-    except ValueError as error:
-        raise InputError(str(manifest), f"level {level.name!r}: goal_crate: {error}") from None
+        names.add(entry.name)
+        yield entry

@@ -51,13 +51,22 @@ def read_levels(path: Path) -> list[Level]:
     Raises:
         InputError: naming file and line; see `parse_levels`.
     """
+    return list(iter_levels(path))
+
+
+def iter_levels(path: Path) -> Iterator[Level]:
+    """The levels of an XSB file one by one, so that only its text is held.
+
+    Raises:
+        InputError: naming file and line, when that line is reached; see `parse_levels`.
+    """
     try:
         size = path.stat().st_size
     except OSError:
         size = 0  # read_text says what is wrong
     if size > MAX_CELLS:
         raise InputError(str(path), f"the file has {size} bytes; at most {MAX_CELLS} are read")
-    return parse_levels(read_text(path), str(path))
+    yield from _levels(read_text(path), str(path))
 
 
 def write_levels(path: Path, levels: Iterable[Level]) -> None:
@@ -94,7 +103,10 @@ def parse_levels(text: str, where: str) -> list[Level]:
         InputError: there is no level, a row holds an unknown character, a level is too large, is not enclosed by
             walls, is not playable (`Level.require_playable`), or has the name of an earlier one.
     """
-    levels: list[Level] = []
+    return list(_levels(text, where))
+
+
+def _levels(text: str, where: str) -> Iterator[Level]:
     lines_of_names: dict[str, int] = {}
     cells = 0
     for number, block in enumerate(_named_blocks(text), start=1):
@@ -105,10 +117,9 @@ def parse_levels(text: str, where: str) -> list[Level]:
         name = block.name or _as_name(f"{Path(where).stem}-{number}")
         if (first := lines_of_names.setdefault(name, block.line)) != block.line:
             raise InputError(_at(where, block.line), f"name {name!r} is taken by the level at line {first}")
-        levels.append(replace(level, name=name))
-    if not levels:
+        yield replace(level, name=name)
+    if not lines_of_names:
         raise InputError(where, "no level found: no line begins with a wall '#'")
-    return levels
 
 
 @dataclass(frozen=True)

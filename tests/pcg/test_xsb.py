@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from pcg.errors import InputError
 from pcg.level import Level
-from pcg.xsb import MAX_CELLS, MAX_SIDE, format_level, parse_levels, read_levels, write_levels
+from pcg.xsb import MAX_CELLS, MAX_SIDE, format_level, iter_levels, parse_levels, read_levels, write_levels
 
 A = "#####\n#@$.#\n#####"
 B = "#####\n#.$@#\n#####"
@@ -174,3 +174,13 @@ def test_two_levels_of_one_name_are_not_written(tmp_path: Path):
     with pytest.raises(ValueError, match="found same twice"):
         write_levels(tmp_path / "levels.xsb", [level, level])
     assert not list(tmp_path.iterdir())
+
+
+def test_levels_come_one_by_one(tmp_path: Path):
+    """The levels before a broken one are there before it is reached."""
+    path = tmp_path / "levels.xsb"
+    path.write_text("#####\n#@$.#\n#####\n\n#####\n#@$?#\n#####\n")
+    levels = iter_levels(path)
+    assert next(levels).name == "levels-1"
+    with pytest.raises(InputError, match=r"line 6: column 4 holds '\?'"):
+        next(levels)
