@@ -138,8 +138,8 @@ def viewer_page(title: str, payloads: Sequence[dict[str, Any]]) -> str:
     return environment.get_template("page.html.j2").render(
         title=title,
         assets=assets,
-        style_hash=_content_hash(assets.style),
-        script_hash=_content_hash(assets.script),
+        style_hash=content_hash(assets.style),
+        script_hash=content_hash(assets.script),
         data=embedded_json(list(payloads)),
     )
 
@@ -169,6 +169,6 @@ def _rounded(values: FloatArray) -> Any:
     return (np.round(values, DIGITS) + 0.0).tolist()
 
 
-def _content_hash(text: str) -> str:
+def content_hash(text: str) -> str:
     """What a Content-Security-Policy calls the text of an element."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
