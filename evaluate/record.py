@@ -10,7 +10,7 @@ from pathlib import Path
 
 from converter.plan import Plan, Status, plan_document, plan_from_document
 from evaluate.store import TrialRow
-from evaluate.trial import Trial, TrialOutcome, run_trial, settings_hash
+from evaluate.trial import Trial, TrialOutcome
 from evaluate.workers import Failure
 
 LIBRARIES = ("manipuzzle", "numpy", "numba", "casadi", "ompl", "shapely")
@@ -20,7 +20,7 @@ LIBRARIES = ("manipuzzle", "numpy", "numba", "casadi", "ompl", "shapely")
 def run_recorded(trial: Trial) -> TrialRow:
     """Runs a trial and describes it; the function that study workers call."""
     started = datetime.now(UTC)
-    outcome = run_trial(trial.scene, trial.settings, trial.seed)
+    outcome = trial.run()
     plan = outcome.plan
     return _row(
         trial,
@@ -84,10 +84,10 @@ def _row(
         key=trial.key,
         scene=trial.scene.name,
         scene_hash=trial.scene.geometry_hash,
-        method=trial.settings.method,
+        method=trial.method.name,
         seed=trial.seed,
-        settings=json.dumps(trial.settings.as_document(), sort_keys=True),
-        settings_hash=settings_hash(trial.settings),
+        settings=json.dumps(trial.method.document, sort_keys=True),
+        settings_hash=trial.method.hash,
         status=status.value,
         verified=verified,
         time_s=time_s,
@@ -100,6 +100,7 @@ def _row(
         machine=_machine(),
         started=started.isoformat(timespec="milliseconds"),
         finished=finished.isoformat(timespec="milliseconds"),
+        preset=trial.scene.preset,
     )
 
 

@@ -1,21 +1,27 @@
 """The trials of a study on disk: an SQLite database with one row per trial, failures included.
 
 One process writes (a lock sees to that), any number may read meanwhile. A row is on disk before the next result is
-taken, so whatever interrupts a study costs only the trials under way.
+taken, so whatever interrupts a study costs only the trials under way. Beside the trials are the scenes that they were
+run on, and what the study that last ran in the folder consists of: a folder needs no other file to be reported on.
 """
 
 import contextlib
 import fcntl
+import json
 import sqlite3
-from collections.abc import Iterator
-from dataclasses import astuple, dataclass, fields, replace
+import zlib
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, astuple, dataclass, fields, replace
+from functools import cached_property
 from pathlib import Path
-from typing import IO, Self
+from typing import IO, Any, Self
 
+from converter.formats import scene_yaml
+from converter.scene import Scene
 from pcg.errors import InputError
 
 FILE_NAME = "trials.sqlite"
-VERSION = 1
+VERSION = 2
 """`PRAGMA user_version` of the database."""
 
 
@@ -27,10 +33,10 @@ class TrialRow:
         key: `Trial.key`.
         scene: Name of the scene.
         scene_hash: `Scene.geometry_hash`.
-        method: Name of the method.
+        method: Name of the method in the study.
         seed: Seed of the trial.
-        settings: Every setting, JSON.
-        settings_hash: `evaluate.trial.settings_hash`.
+        settings: Every setting, JSON; for other people's planners also which one it is.
+        settings_hash: `evaluate.method.Method.hash`.
         status: A `converter.plan.Status`.
         verified: Whether the plan passed verification; None without a plan.
         time_s: Planning time; for a trial that was stopped, its wall time [s].
@@ -43,6 +49,7 @@ class TrialRow:
         machine: Processor and system.
         started: ISO 8601, UTC.
         finished: ISO 8601, UTC.
+        preset: Geometry preset of the scene; None for other geometry.
     """
 
     key: str
@@ -64,6 +71,7 @@ class TrialRow:
     machine: str
     started: str
     finished: str
+    preset: str | None = None
 
 
 _TYPES = {
@@ -75,13 +83,141 @@ _TYPES = {
     "pick_places": "INTEGER",
     "message": "TEXT",
     "plan": "BLOB",
+    "preset": "TEXT",
 }
 _COLUMNS = [column.name for column in fields(TrialRow)]
-_CREATE = ", ".join(f"{name} {_TYPES.get(name, 'TEXT NOT NULL')}" for name in _COLUMNS)
+_TABLES = {
+    "trial": ", ".join(f"{name} {_TYPES.get(name, 'TEXT NOT NULL')}" for name in _COLUMNS),
+    "scene": "name TEXT NOT NULL, scene_hash TEXT NOT NULL, document BLOB NOT NULL, UNIQUE (name, scene_hash)",
+    "study": "id INTEGER PRIMARY KEY, document BLOB NOT NULL",
+}
+"""Columns of the tables. A document is JSON, compressed by zlib; `study` has one row."""
+
 _INSERT = f"INSERT INTO trial VALUES ({', '.join('?' * len(_COLUMNS))})"  # noqa: S608  # no outside text in it
 
 
-class TrialStore:
+@dataclass(frozen=True)
+class StudyRecord:
+    """What the study consists of that last ran in a folder; the folder may hold trials of other studies too.
+
+    Attributes:
+        name: Title of the study.
+        scenes: Name and `Scene.geometry_hash` of each scene, in order. A name may occur once per geometry preset.
+        methods: Name and `Method.hash` of each method, in order.
+        seeds: The seeds.
+        trials: Number of trials; less than the product of the three where a method does not suit a scene.
+    """
+
+    name: str
+    scenes: tuple[tuple[str, str], ...]
+    methods: tuple[tuple[str, str], ...]
+    seeds: tuple[int, ...]
+    trials: int
+
+    def includes(self, row: TrialRow) -> bool:
+        """Whether a row is a trial of the study."""
+        scenes, methods, seeds = self._sets
+        return (
+            (row.scene, row.scene_hash) in scenes and (row.method, row.settings_hash) in methods and row.seed in seeds
+        )
+
+    @cached_property
+    def _sets(self) -> tuple[frozenset[tuple[str, str]], frozenset[tuple[str, str]], frozenset[int]]:
+        return frozenset(self.scenes), frozenset(self.methods), frozenset(self.seeds)
+
+
+class StoredTrials:
+    """A study's database, open for reading, also while a study writes to it. A context manager."""
+
+    def __init__(self, folder: Path) -> None:
+        """Opens the database in `folder`.
+
+        Raises:
+            InputError: there is none, or the file is no such database.
+        """
+        self._path = folder / FILE_NAME
+        if not self._path.is_file():
+            raise InputError(str(folder), f"no study: there is no file {FILE_NAME}")
+        with self._explained():
+            self._connection = sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro", uri=True)
+            try:
+                _require_version(self._connection, self._path)
+            except BaseException:
+                self._connection.close()
+                raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._connection.close()
+
+    def __contains__(self, key: str) -> bool:
+        with self._explained():
+            return self._connection.execute("SELECT 1 FROM trial WHERE key = ?", (key,)).fetchone() is not None
+
+    def __len__(self) -> int:
+        with self._explained():
+            return int(self._connection.execute("SELECT count(*) FROM trial").fetchone()[0])
+
+    def rows(self, *, plans: bool = True) -> Iterator[TrialRow]:
+        """All rows in the order of completion, one at a time.
+
+        Args:
+            plans: False leaves the plans out, for speed; `plan` is then None in every row.
+
+        Raises:
+            InputError: the file is damaged.
+        """
+        columns = ", ".join(name if plans or name != "plan" else "NULL" for name in _COLUMNS)
+        yield from self._selected(f"SELECT {columns} FROM trial ORDER BY rowid")  # noqa: S608  # our own column names
+
+    def find(self, key: str) -> list[TrialRow]:
+        """The rows whose key begins with `key`."""
+        condition = "substr(key, 1, ?) = ?"
+        return list(self._selected(f"SELECT {', '.join(_COLUMNS)} FROM trial WHERE {condition}", len(key), key))  # noqa: S608  # our own text
+
+    def scenes(self) -> Iterator[Scene]:
+        """The scenes that trials of this folder were run on, one at a time, in the order of the studies.
+
+        Raises:
+            InputError: the file is damaged.
+        """
+        with self._explained():
+            for name, document in self._connection.execute("SELECT name, document FROM scene ORDER BY rowid"):
+                yield scene_yaml.from_document(json.loads(zlib.decompress(document)), f"{self._path}: {name}", name)
+
+    def study(self) -> StudyRecord | None:
+        """The study that last ran in the folder; None if none did."""
+        with self._explained():
+            found = self._connection.execute("SELECT document FROM study").fetchone()
+        if found is None:
+            return None
+        document = json.loads(zlib.decompress(found[0]))
+        return StudyRecord(
+            name=document["name"],
+            scenes=tuple((name, hash_) for name, hash_ in document["scenes"]),
+            methods=tuple((name, hash_) for name, hash_ in document["methods"]),
+            seeds=tuple(document["seeds"]),
+            trials=document["trials"],
+        )
+
+    def _selected(self, statement: str, *parameters: Any) -> Iterator[TrialRow]:
+        with self._explained():
+            for values in self._connection.execute(statement, parameters):
+                row = TrialRow(*values)
+                # SQLite has no Booleans.
+                yield row if row.verified is None else replace(row, verified=bool(row.verified))
+
+    @contextlib.contextmanager
+    def _explained(self) -> Iterator[None]:
+        try:
+            yield
+        except sqlite3.Error as error:
+            raise InputError(str(self._path), f"not usable as a study's database: {error}") from None
+
+
+class TrialStore(StoredTrials):
     """A study's database, open for reading and writing by this process alone. A context manager."""
 
     def __init__(self, folder: Path) -> None:
@@ -100,16 +236,9 @@ class TrialStore:
             self._lock.close()
             raise
 
-    def __enter__(self) -> Self:
-        return self
-
     def __exit__(self, *_: object) -> None:
-        self._connection.close()
+        super().__exit__()
         self._lock.close()
-
-    def __contains__(self, key: str) -> bool:
-        with self._explained():
-            return self._connection.execute("SELECT 1 FROM trial WHERE key = ?", (key,)).fetchone() is not None
 
     def add(self, row: TrialRow) -> None:
         """Writes one row.
@@ -120,24 +249,29 @@ class TrialStore:
         with self._explained(), self._connection:
             self._connection.execute(_INSERT, astuple(row))
 
-    def rows(self) -> Iterator[TrialRow]:
-        """All rows in the order of completion, one at a time.
+    def add_scenes(self, scenes: Iterable[Scene]) -> None:
+        """Writes the scenes that the folder lacks.
 
         Raises:
-            InputError: the file is damaged.
+            InputError: the disk is full or the file cannot be written.
         """
-        with self._explained():
-            for values in self._connection.execute("SELECT * FROM trial ORDER BY rowid"):
-                row = TrialRow(*values)
-                # SQLite has no Booleans.
-                yield row if row.verified is None else replace(row, verified=bool(row.verified))
+        with self._explained(), self._connection:
+            self._connection.executemany("INSERT OR IGNORE INTO scene VALUES (?, ?, ?)", map(_scene_row, scenes))
 
-    @contextlib.contextmanager
-    def _explained(self) -> Iterator[None]:
-        try:
-            yield
-        except sqlite3.Error as error:
-            raise InputError(str(self._path), f"not usable as a study's database: {error}") from None
+    def set_study(self, study: StudyRecord) -> None:
+        """Says which study the folder is about from now on.
+
+        Raises:
+            InputError: the disk is full or the file cannot be written.
+        """
+        document = zlib.compress(json.dumps(asdict(study)).encode())
+        with self._explained(), self._connection:
+            self._connection.execute("INSERT OR REPLACE INTO study VALUES (1, ?)", (document,))
+
+
+def _scene_row(scene: Scene) -> tuple[str, str, bytes]:
+    document = zlib.compress(json.dumps(scene_yaml.to_document(scene)).encode())
+    return scene.name, scene.geometry_hash, document
 
 
 def _opened(path: Path) -> sqlite3.Connection:
@@ -147,7 +281,8 @@ def _opened(path: Path) -> sqlite3.Connection:
         # With a write-ahead log others can read while this process writes, and a commit does not wait for the disk.
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = NORMAL")
-        connection.execute(f"CREATE TABLE IF NOT EXISTS trial ({_CREATE}) STRICT")
+        for table, columns in _TABLES.items():
+            connection.execute(f"CREATE TABLE IF NOT EXISTS {table} ({columns}) STRICT")
         connection.execute(f"PRAGMA user_version = {VERSION}")
     except BaseException:
         connection.close()

@@ -1,16 +1,18 @@
 """One trial: one planner on one scene with one seed, and the independent verification of its plan."""
 
-import hashlib
-import json
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from converter.plan import Plan
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import Part
+from evaluate.digest import digest
+from evaluate.method import Method, OwnPlanner
 from pcg.errors import InputError
-from planner import Settings, solve
+from planner import Settings
 from planner.problem import Problem
 from planner.push import SourceLevel
 from planner.subgoals_human import HumanSubgoals
@@ -23,19 +25,27 @@ class Trial:
 
     Attributes:
         scene: The scene to solve.
-        settings: Every setting of the planner, among them the method.
+        method: The planner with its settings.
         seed: Seed of the trial's only random generator, >= 0.
     """
 
     scene: Scene
-    settings: Settings
+    method: Method
     seed: int
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Identity: geometry and name of the scene, method, seed and settings."""
-        scene = self.scene
-        return _digest([scene.geometry_hash, scene.name, self.settings.method, self.seed, settings_hash(self.settings)])
+        scene, method = self.scene, self.method
+        return digest([scene.geometry_hash, scene.name, method.name, self.seed, method.hash])
+
+    def run(self) -> "TrialOutcome":
+        """Plans and verifies.
+
+        Raises:
+            InputError: the initial configuration is invalid (a body inside another one).
+        """
+        return _verified(self.scene, self.method.plan(self.scene, self.seed))
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,19 +71,16 @@ class TrialOutcome:
         return self.verified is True
 
 
-def settings_hash(settings: Settings) -> str:
-    """Sixteen hexadecimal digits over every setting."""
-    return _digest(settings.as_document())
-
-
 def run_trial(scene: Scene, settings: Settings, seed: int) -> TrialOutcome:
-    """Plans and verifies.
+    """Plans by the product's own planner, and verifies.
 
     Raises:
         InputError: the initial configuration is invalid (a body inside another one).
     """
-    rng = np.random.default_rng(np.random.SeedSequence(seed))
-    plan = solve(scene, settings, rng).to_plan(scene, settings, seed)
+    return _verified(scene, OwnPlanner().plan(scene, settings, seed))
+
+
+def _verified(scene: Scene, plan: Plan) -> TrialOutcome:
     return TrialOutcome(plan, tuple(verify(scene, plan)) if plan.solved else None)
 
 
@@ -101,10 +108,15 @@ def require_plannable(scene: Scene, settings: Settings, where: str) -> None:
 
 def warm_up(*every: Settings) -> None:
     """Solves a small scene with each of the settings, so that no trial's time includes loading and compiling."""
-    for settings in every:
-        # Nobody demonstrates a scene like this one, and no level is its source.
-        method = "Rnd+R" if settings.generator in {"Hum", "Push"} else settings.method
-        run_trial(_warm_up_scene(), replace(settings, method=method, improve_rounds=1), 0)
+    prepare([Method(settings.method, settings) for settings in every])
+
+
+def prepare(methods: Sequence[Method]) -> None:
+    """Loads and compiles what trials with these methods need, the verification included."""
+    scene = _warm_up_scene()
+    for method in methods:
+        method.planner.prepare(scene, method.settings)
+    run_trial(scene, Settings(method="Rnd+R"), 0)
 
 
 def _warm_up_scene() -> Scene:
@@ -121,7 +133,3 @@ def _warm_up_scene() -> Scene:
         ),
         goal=Goal("obj", np.array([0.5, 0.0]), np.array([0.2, 0.2])),
     )
-
-
-def _digest(document: object) -> str:
-    return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]

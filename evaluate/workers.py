@@ -1,28 +1,26 @@
 """A pool of worker processes that survives whatever a task does to its worker.
 
-Each worker is a fresh interpreter with one pipe to the coordinator. A task that overruns its limit, exhausts its
-memory or crashes costs its worker, which is replaced, and ends as a `Failure`; the other tasks are not touched. Tasks
-are drawn from their iterator only when a worker is free, so any number of them needs bounded memory. Workers end with
-their coordinator, however it ends.
+Each worker is a fresh interpreter (`evaluate.worker_process`) with one connection to its coordinator. A task that
+overruns its limit, exhausts its memory or crashes costs its worker, which is replaced, and ends as a `Failure`; the
+other tasks are not touched. A worker that somebody else killed is replaced too, and its task begins anew: that was not
+the task's fault, unless it happens `ATTEMPTS` times. Tasks are drawn from their iterator only when a worker is free, so
+any number of them needs bounded memory. Workers end with their coordinator, however it ends, and with them whatever
+they have started.
 
 The executors of the standard library do not fit: a killed worker breaks the whole executor, a running task cannot be
-stopped, and all tasks are queued at once.
+stopped, all tasks are queued at once, and workers of a Dask worker (`evaluate.cluster`) may start no processes.
 """
 
 import contextlib
-import multiprocessing
-import multiprocessing.connection
-import multiprocessing.resource_tracker
-import os
-import resource
 import signal
-import threading
 import time
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
-from multiprocessing.connection import Connection
-from typing import Any, Generic, Literal, TypeVar
+from multiprocessing.connection import wait
+from typing import Any, Generic, Literal, Protocol, TypeVar
+
+from evaluate.worker_process import READY, Duty, WorkerProcess
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -30,13 +28,16 @@ Result = TypeVar("Result")
 START_ATTEMPTS = 3
 """How often in a row a worker may end before it is ready."""
 
-_SPAWN = multiprocessing.get_context("spawn")
+ATTEMPTS = 3
+"""How often a task is begun whose worker is killed from outside."""
+
+KILLED = (-signal.SIGKILL, -signal.SIGTERM)
+"""Exit codes of workers that somebody killed: an administrator, a batch system, or the kernel for lack of memory."""
 
 
 class _State(Enum):
     """Of a worker, where a result is not there yet."""
 
-    READY = auto()
     UNDER_WAY = auto()
 
 
@@ -60,200 +61,170 @@ class Failure:
 
 
 @dataclass(frozen=True)
-class Limits:
-    """What a task may use.
+class Job(Generic[Task, Result]):
+    """What workers do with tasks. All but `seconds` is sent to them: functions of modules, or partial ones.
 
     Attributes:
-        seconds: Wall time of one task [s]; None for no limit.
-        memory_mb: Memory for the data of a worker [MiB]; None for no limit.
+        function: Does a task.
+        failed: The result of a task that failed.
+        seconds: Wall time that a task may take [s].
+        memory_mb: Memory for the data of a worker, and of each program that it starts [MiB]; None for no limit.
+        prepare: Called once in each new worker, outside the time limit: imports and compilation.
     """
 
-    seconds: float | None = None
+    function: Callable[[Task], Result]
+    failed: Callable[[Task, Failure], Result]
+    seconds: Callable[[Task], float]
     memory_mb: int | None = None
+    prepare: Callable[[], object] | None = None
+
+    @property
+    def duty(self) -> Duty:
+        """What a worker process has to know."""
+        return Duty(self.function, self.prepare, self.memory_mb)
 
 
-def run_tasks(
-    function: Callable[[Task], Result],
-    tasks: Iterator[Task],
-    workers: int,
-    limits: Limits,
-    prepare: Callable[[], object] | None = None,
-) -> Generator[tuple[Task, Result | Failure]]:
+class Execute(Protocol):
+    """A way to do tasks: on this machine, or on a cluster."""
+
+    def __call__(self, job: Job[Task, Result], tasks: Iterator[Task]) -> Generator[tuple[Task, Result]]:
+        """Yields each task with its result, in the order of completion; closing it stops the workers."""
+
+
+def run_tasks(job: Job[Task, Result], tasks: Iterator[Task], workers: int) -> Generator[tuple[Task, Result]]:
     """Yields each task with its result, in the order of completion.
 
     Closing the generator, or an exception inside it such as KeyboardInterrupt, kills the workers and drops the
     unfinished tasks.
 
     Args:
-        function: Called with one task; has to be importable (defined in a module) like tasks and results.
+        job: What to do.
         tasks: Drawn from lazily: at most `workers` of them are under way.
         workers: Number of processes, >= 1.
-        limits: What a task may use.
-        prepare: Called once in each new worker, outside the time limit: imports and compilation.
 
     Raises:
         WorkerStartError: a worker ended `START_ATTEMPTS` times before it was ready.
     """
-    idle = [_Worker(function, prepare, limits) for _ in range(workers)]
-    busy: list[_Worker[Task, Result]] = []
+    idle = [Worker[Task, Result](job.duty) for _ in range(workers)]
+    busy: list[Worker[Task, Result]] = []
     try:
         while True:
             while idle and (task := next(tasks, None)) is not None:
                 worker = idle.pop()
                 busy.append(worker)
-                worker.assign(task)
+                worker.assign(task, job.seconds(task))
             if not busy:
                 return
             for worker in _with_news(busy):
                 outcome = worker.news()
-                if outcome is not _State.UNDER_WAY:
-                    busy.remove(worker)
-                    idle.append(worker)
-                    yield worker.task, outcome
+                if isinstance(outcome, _State):
+                    continue
+                busy.remove(worker)
+                idle.append(worker)
+                yield worker.task, job.failed(worker.task, outcome) if isinstance(outcome, Failure) else outcome
     finally:
         for worker in (*idle, *busy):
             worker.kill()
 
 
-def _with_news(busy: list["_Worker[Task, Result]"]) -> list["_Worker[Task, Result]"]:
+def _with_news(busy: Sequence["Worker[Any, Any]"]) -> list["Worker[Any, Any]"]:
     """Waits until a worker sent something, ended or reached its limit, and returns those workers."""
     deadline = min((worker.deadline for worker in busy if worker.deadline is not None), default=None)
     timeout = None if deadline is None else max(0.0, deadline - time.monotonic())
-    ready = multiprocessing.connection.wait([worker.connection for worker in busy], timeout)
+    ready = wait([worker.process.connection for worker in busy if worker.process is not None], timeout)
     now = time.monotonic()
     return [
         worker
         for worker in busy
-        if worker.connection in ready or (worker.deadline is not None and worker.deadline <= now)
+        if worker.process is not None
+        and (worker.process.connection in ready or (worker.deadline is not None and worker.deadline <= now))
     ]
 
 
-class _Worker(Generic[Task, Result]):
-    """One place in the pool: a process that is started when needed and again after it was lost."""
+class Worker(Generic[Task, Result]):
+    """One place in the pool: a process that is started when needed and again after it was lost.
+
+    Attributes:
+        task: The task that was assigned last.
+        process: The process; None before it is needed and after it was lost.
+        deadline: When the present task reaches its limit (monotonic clock) [s]; None before it began.
+    """
 
     task: Task
-    connection: Connection
-    deadline: float | None
-    """When the present task reaches its limit (monotonic clock) [s]; None without limit or before it began."""
 
-    def __init__(
-        self, function: Callable[[Task], Result], prepare: Callable[[], object] | None, limits: Limits
-    ) -> None:
-        self._function, self._prepare, self._limits = function, prepare, limits
-        self._process: multiprocessing.context.SpawnProcess | None = None
+    def __init__(self, duty: Duty) -> None:
+        self.process: WorkerProcess | None = None
+        self.deadline: float | None = None
+        self._duty = duty
         self._ready = False
         self._failed_starts = 0
+        self._attempts = 0
+        self._seconds = 0.0
         self._began = 0.0
-        self.deadline = None
 
-    def assign(self, task: Task) -> None:
-        """Hands out a task, as soon as the process is ready for it."""
-        self.task = task
-        if self._process is None:
-            self._start()
+    def assign(self, task: Task, seconds: float) -> None:
+        """Hands out a task with its time limit [s], as soon as the process is ready for it."""
+        self.task, self._seconds, self._attempts = task, seconds, 0
+        self._began = time.monotonic()
+        if self.process is None:
+            self.process = WorkerProcess(self._duty)
         elif self._ready:
-            self._send()
+            self._send(self.process)
+
+    def do(self, task: Task, seconds: float) -> Result | Failure:
+        """Does one task and waits for its result."""
+        self.assign(task, seconds)
+        while True:
+            for worker in _with_news([self]):
+                outcome = worker.news()
+                if not isinstance(outcome, _State):
+                    return outcome
 
     def news(self) -> Result | Failure | Literal[_State.UNDER_WAY]:
         """What became of the task; to be called when there is something to hear."""
-        if not self.connection.poll():
+        process = self.process
+        assert process is not None  # noqa: S101  # a task is under way
+        if not process.connection.poll():
             self.kill()
-            return Failure("timeout", f"stopped at the hard limit of {self._limits.seconds:g} s", self._elapsed())
+            return Failure("timeout", f"stopped at the hard limit of {self._seconds:g} s", self._elapsed())
         try:
-            message = self.connection.recv()
+            message = process.connection.recv()
         except (EOFError, OSError):
-            return self._lost()
-        if message is _State.READY:
+            return self._lost(process)
+        if message is READY:
             self._ready, self._failed_starts = True, 0
-            self._send()
+            self._send(process)
             return _State.UNDER_WAY
         self.deadline = None
-        return message  # type: ignore[no-any-return]  # what the function returned, or a Failure
+        succeeded, value = message
+        return value if succeeded else Failure("error", value, self._elapsed())
 
     def kill(self) -> None:
         """Ends the process, whatever it is doing."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.join()
-            self.connection.close()
-        self._process, self._ready, self.deadline = None, False, None
+        if self.process is not None:
+            self.process.kill()
+        self.process, self._ready, self.deadline = None, False, None
 
-    def _start(self) -> None:
-        self.connection, theirs = _SPAWN.Pipe()
-        arguments = (theirs, self._function, self._prepare, self._limits.memory_mb)
-        self._process = _SPAWN.Process(target=_serve, args=arguments, daemon=True)
-        with _interrupts_blocked():
-            self._process.start()
-        # The pipe reports the end of the process only when no other process holds its far end.
-        theirs.close()
-
-    def _send(self) -> None:
+    def _send(self, process: WorkerProcess) -> None:
         self._began = time.monotonic()
-        self.deadline = None if self._limits.seconds is None else self._began + self._limits.seconds
+        self.deadline = self._began + self._seconds
+        self._attempts += 1
         # A process that has just ended is noticed by the next `news`.
         with contextlib.suppress(OSError):
-            self.connection.send(self.task)
+            process.connection.send(self.task)
 
-    def _lost(self) -> Failure | Literal[_State.UNDER_WAY]:
-        assert self._process is not None  # noqa: S101  # a connection implies a process
-        was_ready = self._ready
-        self._process.join()
-        code = self._process.exitcode or 0
+    def _lost(self, process: WorkerProcess) -> Failure | Literal[_State.UNDER_WAY]:
+        was_ready, code = self._ready, process.ended()
+        self.process, self._ready, self.deadline = None, False, None
         reason = f"signal {-code}" if code < 0 else f"exit status {code}"
-        self.kill()
-        if was_ready:
-            return Failure("error", f"the worker process ended with {reason}", self._elapsed())
-        self._failed_starts += 1
+        if was_ready and (code not in KILLED or self._attempts == ATTEMPTS):
+            times = "" if self._attempts == 1 else f", {self._attempts} times in a row"
+            return Failure("error", f"the worker process ended with {reason}{times}", self._elapsed())
+        self._failed_starts += not was_ready
         if self._failed_starts == START_ATTEMPTS:
             raise WorkerStartError(f"worker processes end at their start with {reason}")
-        self._start()
+        self.process = WorkerProcess(self._duty)
         return _State.UNDER_WAY
 
     def _elapsed(self) -> float:
         return time.monotonic() - self._began
-
-
-@contextlib.contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Processes started inside never see Ctrl-C, which a terminal sends to all; the coordinator ends them."""
-    # The first process starts this helper too, and that would unblock the signal again.
-    multiprocessing.resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _serve(
-    connection: Connection,
-    function: Callable[[Any], Any],
-    prepare: Callable[[], object] | None,
-    memory_mb: int | None,
-) -> None:
-    """The worker process: calls `function` with each task that arrives, until the pipe closes."""
-    threading.Thread(target=_exit_with_parent, daemon=True).start()
-    if memory_mb is not None:
-        resource.setrlimit(resource.RLIMIT_DATA, (memory_mb << 20, memory_mb << 20))
-    if prepare is not None:
-        prepare()
-    with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):
-        connection.send(_State.READY)
-        while True:
-            connection.send(_outcome(function, connection.recv()))
-
-
-def _outcome(function: Callable[[Any], Any], task: Any) -> Any:
-    began = time.monotonic()
-    try:
-        return function(task)
-    except Exception as error:  # noqa: BLE001  # whatever a task raises is its outcome
-        message = " ".join(f"{type(error).__name__}: {error}".split())
-        return Failure("error", message, time.monotonic() - began)
-
-
-def _exit_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)

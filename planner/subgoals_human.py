@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from converter.scene import Scene
 from converter.shape import FloatArray
 from pcg.data_folder import data_folder
 from pcg.errors import InputError
@@ -15,6 +16,12 @@ FOLDER = "human"
 """Where `data` holds the demonstrations: one file a scene, called after it."""
 
 
+def demonstration_path(scene: Scene, settings: Settings) -> Path:
+    """Where the demonstration for a scene has to be."""
+    folder = data_folder() / FOLDER if settings.demonstrations is None else Path(settings.demonstrations)
+    return folder / f"{scene.name}.yaml"
+
+
 class HumanSubgoals:
     """Demonstrated positions, the same in every configuration, of which as many as wanted are drawn.
 
@@ -24,8 +31,7 @@ class HumanSubgoals:
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
         scene = problem.scene
-        folder = data_folder() / FOLDER if settings.demonstrations is None else Path(settings.demonstrations)
-        path = folder / f"{scene.name}.yaml"
+        path = demonstration_path(scene, settings)
         if not path.is_file():
             raise InputError(scene.name, f"method Hum needs a demonstration; there is no file {path}")
         demonstration = read_demonstration(path)

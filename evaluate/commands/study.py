@@ -6,11 +6,11 @@ from functools import partial
 from pathlib import Path
 
 from evaluate.output import Progress, log, print_json, print_line, print_table, progress
+from evaluate.specification import read_study
 from evaluate.store import TrialRow, TrialStore
-from evaluate.study import StudySummary, read_study, run_study, study_table
+from evaluate.study import StudySummary, run_study, study_table
 from evaluate.tables import Cell, by_method
-from evaluate.trial import warm_up
-from evaluate.workers import WorkerStartError
+from evaluate.workers import WorkerStartError, run_tasks
 from pcg.errors import InputError
 from pcg.files import write_text
 
@@ -20,11 +20,12 @@ TABLE_FILE = "table.md"
 def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
     """Runs the command; see `evaluate.cli.study`."""
     study = read_study(spec)
+    for note in study.notes:
+        log(note)
     with TrialStore(out) as store, progress("rate", "solved") as bar:
         display = _Display(bar, study.name, study.size)
-        prepare = partial(warm_up, *study.settings_by_method.values())
         try:
-            summary = run_study(study, store, workers, prepare=prepare, on_trial=display.on_trial)
+            summary = run_study(study, store, partial(run_tasks, workers=workers), on_trial=display.on_trial)
         except KeyboardInterrupt:
             log(f"interrupted: the finished trials are in {out}, the same command continues")
             raise
@@ -32,7 +33,7 @@ def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
             raise InputError(str(spec), f"{error}; memory_mb may be too small") from None
     write_text(out / TABLE_FILE, study_table(study, summary.cells))
     totals = by_method(summary.cells)
-    by_name = {method: totals.get(method, Cell()) for method in study.methods}
+    by_name = {method: totals.get(method, Cell()) for method in (m.name for m in study.methods)}
     if as_json:
         print_json(_document(summary, by_name))
     else:

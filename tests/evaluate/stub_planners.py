@@ -2,15 +2,21 @@
 
 import os
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 from evaluate.record import failed_row
 from evaluate.store import TrialRow
 from evaluate.trial import Trial
-from evaluate.workers import Failure
+from evaluate.workers import Failure, Job
 
 TIMES_OUT, CRASHES, RAISES, UNSOLVED = range(4)
 """Seeds with which `troubled` gets into trouble."""
+
+
+def job(run: Callable[[Trial], TrialRow], seconds: float = 2.0) -> Job[Trial, TrialRow]:
+    """What workers do with a stand-in for the planner."""
+    return Job(run, failed_row, lambda _: seconds)
 
 
 def quick(trial: Trial) -> TrialRow:

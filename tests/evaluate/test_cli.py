@@ -262,7 +262,7 @@ def test_study_reports_and_resumes(run: Run, folder: Path):
 
 def test_workers_that_cannot_start_are_one_line(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch):
     """Too little memory for a worker, here stood in for by a preparation that fails, ends the study clearly."""
-    monkeypatch.setattr("evaluate.commands.study.warm_up", operator.truediv)
+    monkeypatch.setattr("evaluate.study.prepare", operator.truediv)
     (folder / "spec.yaml").write_text("name: s\nscenes: [room.yaml]\nmethods: [Rnd+R]\nseeds: 2\n")
     result = run("study", "spec.yaml", "--out", "study")
     assert (result.exit_code, result.stdout) == (2, "")

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from converter.scene import Scene
+from evaluate.method import method_named
 from evaluate.record import failed_row, plan_of, run_recorded
-from evaluate.store import FILE_NAME, TrialRow, TrialStore
+from evaluate.store import FILE_NAME, StoredTrials, StudyRecord, TrialRow, TrialStore
 from evaluate.trial import Trial
 from evaluate.workers import Failure
 from pcg.errors import InputError
@@ -18,7 +19,7 @@ from planner import Settings
 @pytest.fixture
 def trial(small_room: Scene) -> Trial:
     """A trial that is easy to solve."""
-    return Trial(small_room, Settings(), 0)
+    return Trial(small_room, method_named("Rnd+FPR", Settings()), 0)
 
 
 @pytest.fixture
@@ -38,6 +39,9 @@ def test_rows_come_back_as_they_were(tmp_path: Path, trial: Trial, row: TrialRow
         assert list(store.rows()) == rows
         assert row.key in store
         assert "c" not in store
+        assert len(store) == 3
+        assert store.find("a") == [rows[1]]
+        assert [each.plan for each in store.rows(plans=False)] == [None, None, None]
 
 
 def test_a_solved_trial_is_recorded_completely(trial: Trial):
@@ -69,11 +73,36 @@ def test_one_writer_at_a_time(tmp_path: Path):
 
 def test_readers_see_finished_rows_meanwhile(tmp_path: Path, row: TrialRow):
     """A row can be read by others as soon as it is added."""
-    with TrialStore(tmp_path) as store:
+    with TrialStore(tmp_path) as store, StoredTrials(tmp_path) as reader:
+        assert list(reader.rows()) == []
         store.add(row)
-        reader = sqlite3.connect(tmp_path / FILE_NAME)
-        assert reader.execute("SELECT key FROM trial").fetchall() == [(row.key,)]
-        reader.close()
+        assert list(reader.rows()) == [row]
+
+
+def test_readers_need_a_study(tmp_path: Path):
+    """A folder without a database is refused, and stays as it was."""
+    with pytest.raises(InputError, match=r"no study: there is no file trials\.sqlite"):
+        StoredTrials(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_scenes_and_study_are_stored(tmp_path: Path, small_room: Scene, row: TrialRow):
+    """Scenes come back with name and geometry, each once; the study of the last run replaces the one before."""
+    other = replace(small_room, name="other", tolerance=0.0)
+    study = StudyRecord("first", (("small-room", row.scene_hash),), (("Rnd+FPR", row.settings_hash),), (0, 3), 2)
+    with TrialStore(tmp_path) as store:
+        assert store.study() is None
+        store.add_scenes([small_room, other])
+        store.add_scenes([small_room])
+        store.set_study(replace(study, name="zeroth"))
+        store.set_study(study)
+    with StoredTrials(tmp_path) as stored:
+        found = [(scene.name, scene.geometry_hash) for scene in stored.scenes()]
+        assert found == [("small-room", small_room.geometry_hash), ("other", other.geometry_hash)]
+        assert stored.study() == study
+    assert study.includes(row)
+    for changed in ({"seed": 1}, {"scene_hash": "x"}, {"method": "x"}, {"settings_hash": "x"}, {"scene": "x"}):
+        assert not study.includes(replace(row, **changed))
 
 
 def test_files_that_are_no_database(tmp_path: Path):
@@ -85,7 +114,7 @@ def test_files_that_are_no_database(tmp_path: Path):
     connection = sqlite3.connect(tmp_path / FILE_NAME)
     connection.execute("PRAGMA user_version = 99")
     connection.close()
-    with pytest.raises(InputError, match="a database of version 99, allowed is 1"):
+    with pytest.raises(InputError, match="a database of version 99, allowed is 2"):
         TrialStore(tmp_path)
 
 

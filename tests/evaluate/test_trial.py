@@ -8,7 +8,8 @@ import pytest
 
 from converter.plan import Plan, plan_document
 from converter.scene import Scene
-from evaluate import trial as trial_module
+from evaluate import method as method_module
+from evaluate.method import Method
 from evaluate.trial import Trial, TrialOutcome, require_plannable, run_trial, warm_up
 from pcg.errors import InputError
 from planner import METHODS, PRESETS, PlanResult, Settings
@@ -53,7 +54,7 @@ def test_a_wrong_plan_does_not_count(small_room: Scene, small_plan: Plan, monkey
         replace(small_plan.segments[-1], path=np.array([[-0.8, 1.1], [1, 0]])),
     )
     result = PlanResult(small_plan.status, 0.0, through_the_wall)
-    monkeypatch.setattr(trial_module, "solve", lambda *_: result)
+    monkeypatch.setattr(method_module, "solve", lambda *_: result)
     outcome = run_trial(small_room, Settings(), 0)
     assert outcome.plan.solved
     assert outcome.verified is False
@@ -70,11 +71,11 @@ def test_without_a_plan_nothing_is_verified(small_plan: Plan):
 
 def test_identity_of_a_trial(small_room: Scene):
     """Geometry, name, method, seed and every setting make another trial; colours and presets' names do not."""
-    trial = Trial(small_room, Settings(), 0)
+    trial = Trial(small_room, Method("Rnd+FPR", Settings()), 0)
     others = [
         replace(trial, seed=1),
-        replace(trial, settings=Settings(method="Rnd+R")),
-        replace(trial, settings=Settings(time_limit=1.0)),
+        replace(trial, method=Method("Rnd+R", Settings(method="Rnd+R"))),
+        replace(trial, method=Method("Rnd+FPR", Settings(time_limit=1.0))),
         replace(trial, scene=replace(small_room, name="other")),
         replace(trial, scene=replace(small_room, tolerance=0.0)),
     ]

@@ -1,39 +1,57 @@
-"""The worker pool, with functions of the standard library as tasks: they can be imported by any process."""
+"""The worker pool. Its tasks are functions of the standard library or of this module, which workers import."""
 
+import contextlib
 import itertools
 import math
-import multiprocessing
 import operator
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from evaluate.workers import Failure, Limits, WorkerStartError, run_tasks
+from evaluate.workers import Failure, Job, WorkerStartError, run_tasks
 
-NO_LIMITS = Limits()
+
+def as_it_is(_task: Any, failure: Failure) -> Failure:
+    """The failure is the result."""
+    return failure
+
+
+def job(function: Callable[[Any], Any], seconds: float = 600.0, **options: Any) -> Job[Any, Any]:
+    """What workers do, without much of a limit."""
+    return Job(function, as_it_is, lambda _: seconds, **options)
+
+
+@pytest.fixture(autouse=True)
+def _importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Workers find this module where this process finds it now."""
+    monkeypatch.syspath_prepend(Path(__file__).parent)
+    monkeypatch.setitem(sys.modules, "test_workers", sys.modules[__name__])
+    for function in (killed_once, start_and_wait, wait_after_saying_pid):
+        monkeypatch.setattr(function, "__module__", "test_workers")
 
 
 def test_every_task_comes_back_with_its_result():
     """Tasks and results belong together, whatever the order."""
-    outcomes = dict(run_tasks(math.factorial, iter(range(20)), 2, NO_LIMITS))
+    outcomes = dict(run_tasks(job(math.factorial), iter(range(20)), 2))
     assert outcomes == {n: math.factorial(n) for n in range(20)}
 
 
 def test_no_tasks_need_no_workers():
     """Nothing to do ends at once, without starting a process."""
-    assert list(run_tasks(math.factorial, iter([]), 2, NO_LIMITS)) == []
+    assert list(run_tasks(job(math.factorial), iter([]), 2)) == []
 
 
 def test_an_exception_is_an_outcome():
     """A task that raises becomes one line with the exception's type; the worker goes on."""
-    outcomes = dict(run_tasks(math.sqrt, iter([-1.0, 4.0]), 1, NO_LIMITS))
+    outcomes = dict(run_tasks(job(math.sqrt), iter([-1.0, 4.0]), 1))
     failure = outcomes[-1.0]
     assert isinstance(failure, Failure)
     assert failure.kind == "error"
@@ -43,7 +61,7 @@ def test_an_exception_is_an_outcome():
 
 def test_an_overrunning_task_is_stopped():
     """The hard limit ends a task that does not end by itself, and the next task gets a new worker."""
-    outcomes = dict(run_tasks(time.sleep, iter([600.0, 0.0]), 1, Limits(seconds=0.3)))
+    outcomes = dict(run_tasks(job(time.sleep, 0.3), iter([600.0, 0.0]), 1))
     failure = outcomes[600.0]
     assert isinstance(failure, Failure)
     assert (failure.kind, failure.message) == ("timeout", "stopped at the hard limit of 0.3 s")
@@ -52,25 +70,55 @@ def test_an_overrunning_task_is_stopped():
 
 
 def test_a_crash_costs_one_task():
-    """A worker that exits is replaced; its task says how it ended."""
-    outcomes = dict(run_tasks(os._exit, iter([7]), 2, NO_LIMITS))
+    """A worker that exits is replaced; its task says how it ended, and is not begun again."""
+    outcomes = dict(run_tasks(job(os._exit), iter([7]), 2))
     failure = outcomes[7]
     assert isinstance(failure, Failure)
     assert (failure.kind, failure.message) == ("error", "the worker process ended with exit status 7")
 
 
-def test_a_killed_worker_is_replaced():
-    """Tasks after a kill from outside are done; the killed one names the signal."""
-    outcomes = dict(run_tasks(signal.raise_signal, iter([signal.SIGKILL, 0]), 1, NO_LIMITS))
+def test_a_killed_worker_is_replaced(tmp_path: Path):
+    """A task whose worker is killed from outside is begun again, and done by the next worker."""
+    path = tmp_path / "begun"
+    outcomes = dict(run_tasks(job(killed_once), iter([str(path), "other"]), 1))
+    assert outcomes == {str(path): "done", "other": "done"}
+    assert path.exists()
+
+
+def killed_once(path: str) -> str:
+    """Kills its process if `path` is new."""
+    if path != "other" and not Path(path).exists():
+        Path(path).touch()
+        signal.raise_signal(signal.SIGKILL)
+    return "done"
+
+
+def test_a_task_that_has_its_worker_killed_is_given_up():
+    """Three killed workers are enough: the task says which signal it was, and the others are done."""
+    outcomes = dict(run_tasks(job(signal.raise_signal), iter([signal.SIGKILL, 0]), 1))
     failure = outcomes[signal.SIGKILL]
     assert isinstance(failure, Failure)
-    assert failure.message == "the worker process ended with signal 9"
+    assert failure.message == "the worker process ended with signal 9, 3 times in a row"
     assert len(outcomes) == 2
+
+
+def test_what_a_task_has_started_ends_with_its_worker(tmp_path: Path):
+    """A program that a task waits for is killed with the worker at the limit, though it has a process group."""
+    path = tmp_path / "pid"
+    outcomes = dict(run_tasks(job(start_and_wait, 1.0), iter([str(path)]), 1))
+    assert outcomes[str(path)].kind == "timeout"
+    assert ends(int(path.read_text()))
+
+
+def start_and_wait(path: str) -> None:
+    """Waits for a process of another group."""
+    with subprocess.Popen(["/bin/sleep", "600"], process_group=0) as process:
+        Path(path).write_text(str(process.pid))
 
 
 def test_memory_is_limited():
     """A task that wants more memory than allowed fails alone."""
-    outcomes = dict(run_tasks(bytes, iter([1 << 31, 3]), 1, Limits(memory_mb=512)))
+    outcomes = dict(run_tasks(job(bytes, memory_mb=512), iter([1 << 31, 3]), 1))
     failure = outcomes[1 << 31]
     assert isinstance(failure, Failure)
     assert failure.message.startswith("MemoryError")
@@ -86,48 +134,71 @@ def test_tasks_are_drawn_lazily():
             drawn.append(n)
             yield n
 
-    outcomes = run_tasks(math.factorial, endless(), 2, NO_LIMITS)
+    outcomes = run_tasks(job(math.factorial), endless(), 2)
     for _ in range(5):
         next(outcomes)
     outcomes.close()
     assert len(drawn) <= 5 + 2
-    assert multiprocessing.active_children() == []
+    assert children() == set()
 
 
 def test_workers_that_cannot_start_end_the_run():
     """An error before the first task, here in the preparation, is no task's fault and is not repeated for ever."""
     with pytest.raises(WorkerStartError, match="exit status 1"):
-        list(run_tasks(math.factorial, iter([1]), 1, NO_LIMITS, prepare=partial(operator.truediv, 1, 0)))
+        list(run_tasks(job(math.factorial, prepare=partial(operator.truediv, 1, 0)), iter([1]), 1))
 
 
 COORDINATOR = """
-import itertools, os, time
-from evaluate.workers import Limits, run_tasks
+import itertools
+from pathlib import Path
+from test_workers import job, wait_after_saying_pid
+from evaluate.workers import run_tasks
 
-def pids():
-    print(os.getpid(), flush=True)
-
-if __name__ == "__main__":
-    list(run_tasks(time.sleep, itertools.repeat(600.0), 2, Limits(), pids))
+list(run_tasks(job(wait_after_saying_pid), itertools.repeat({folder!r}), 2))
 """
+
+
+def wait_after_saying_pid(folder: str) -> None:
+    """Leaves the number of its process in a file's name."""
+    Path(folder, str(os.getpid())).touch()
+    time.sleep(600)
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_workers_end_with_their_coordinator(tmp_path: Path, how: signal.Signals):
     """However the coordinator ends, no process stays behind, even in the middle of a task."""
-    script = tmp_path / "coordinator.py"
-    script.write_text(COORDINATOR)
     with subprocess.Popen(  # noqa: S603 - our own interpreter with our own script
-        [sys.executable, str(script)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        [sys.executable, "-c", COORDINATOR.format(folder=str(tmp_path))],
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
+        stderr=subprocess.DEVNULL,
     ) as coordinator:
-        assert coordinator.stdout is not None
-        workers = [int(coordinator.stdout.readline()) for _ in range(2)]
+        deadline = time.monotonic() + 60
+        while len(list(tmp_path.iterdir())) < 2 and time.monotonic() < deadline:
+            time.sleep(0.05)
+        workers = [int(path.name) for path in tmp_path.iterdir()]
         coordinator.send_signal(how)
         coordinator.wait()
-    deadline = time.monotonic() + 20
-    while any(_is_running(pid) for pid in workers) and time.monotonic() < deadline:
+    assert len(workers) == 2
+    assert all(ends(pid) for pid in workers)
+
+
+def ends(pid: int, seconds: float = 20.0) -> bool:
+    """Whether a process ends before long."""
+    deadline = time.monotonic() + seconds
+    while _is_running(pid) and time.monotonic() < deadline:
         time.sleep(0.05)
-    assert not any(_is_running(pid) for pid in workers)
+    return not _is_running(pid)
+
+
+def children() -> set[int]:
+    """The running processes that this one has started."""
+    found = set()
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            state, parent = path.read_text().rpartition(")")[2].split()[:2]
+            if int(parent) == os.getpid() and state != "Z":
+                found.add(int(path.parent.name))
+    return found
 
 
 def _is_running(pid: int) -> bool:
