@@ -91,6 +91,9 @@ def _asked(metavar: str, text: str, default: str, **limits: float) -> Any:
     return typer.Option(metavar=metavar, help=text, show_default=default, **cast("Any", limits))
 
 
+Workers = Annotated[int, typer.Option(metavar="N", min=1, max=1024, help="Processes that share the work.")]
+
+
 def main() -> None:
     """Entry point of the `manipuzzle` program."""
     for stream in (sys.stdout, sys.stderr):
@@ -206,15 +209,74 @@ def convert(
         typer.Option(metavar="NAME", help="Geometry: clear (default for levels) or published.", show_default=False),
     ] = None,
     tolerance: Tolerance = None,
+    cell: Annotated[float, typer.Option(metavar="METRES", help="Side of a cell.")] = 0.4,
+    agent_radius: Annotated[
+        float | None, typer.Option(metavar="METRES", help="By default that of the preset.", show_default=False)
+    ] = None,
+    agent_height: Annotated[float, typer.Option(metavar="METRES", help="Height of the agent.")] = 0.2,
+    object_size: Annotated[float, typer.Option(metavar="METRES", help="Side of the box that a crate becomes.")] = 0.2,
+    object_height: Annotated[
+        float | None, typer.Option(metavar="METRES", help="By default objects are cubes.", show_default=False)
+    ] = None,
+    goal_size: Annotated[float, typer.Option(metavar="METRES", help="Side of the goal.")] = 0.35,
+    wall_height: Annotated[float, typer.Option(metavar="METRES", help="Height of all walls.")] = 0.4,
+    merge_walls: Annotated[
+        bool, typer.Option("--merge-walls", help="Make adjacent wall cells the fewest bodies that fill the same space.")
+    ] = False,
+    size_jitter: Annotated[
+        float, typer.Option(metavar="SHARE", help="Make each side of each object up to this share longer or shorter.")
+    ] = 0.0,
+    yaw_jitter: Annotated[
+        float, typer.Option(metavar="RADIANS", help="Turn each object by up to this angle, either way.")
+    ] = 0.0,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the jitter.")] = 0,
+    goal_crate: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="Crate, counted from 1 in reading order, that becomes the goal-object; by default the one that the "
+            "level set names or the solver brings to the goal.",
+            show_default=False,
+        ),
+    ] = None,
+    drop_targets: Annotated[
+        bool, typer.Option("--drop-targets", help="Remove all targets but the first, which is the goal.")
+    ] = False,
+    drop_crates: Annotated[
+        bool, typer.Option("--drop-crates", help="Remove all crates but the goal crate, and the surplus targets.")
+    ] = False,
+    workers: Workers = 1,
     json: Json = False,
 ) -> None:
     """Convert levels and scenes to scene files DIR/{name}.yaml, or .xml for MuJoCo.
 
-    Example:  manipuzzle convert out/levels --out out/scenes
-    """
-    from evaluate.commands.convert import run
+    Of the options only --to, --preset and --tolerance apply to scenes. A level's scene records all of them.
 
-    _exit(run(inputs, out, to=to, preset=preset, tolerance=tolerance, as_json=json))
+    Example:  manipuzzle convert out/levels --out out/scenes --merge-walls --yaw-jitter 0.5 --seed 1
+    """
+    from evaluate.commands.convert import conversion_of, run
+
+    conversion = conversion_of(
+        out,
+        to,
+        preset,
+        tolerance,
+        cell=cell,
+        wall_height=wall_height,
+        object_size=object_size,
+        object_height=object_height,
+        goal_size=goal_size,
+        agent_radius=agent_radius,
+        agent_height=agent_height,
+        merge_walls=merge_walls,
+        size_jitter=size_jitter,
+        yaw_jitter=yaw_jitter,
+        seed=seed,
+        goal_crate=goal_crate,
+        drop_targets=drop_targets,
+        drop_crates=drop_crates,
+    )
+    _exit(run(inputs, conversion, workers=workers, as_json=json))
 
 
 @app.command(short_help="Check scenes in a 2D physics preview.")
@@ -383,6 +445,39 @@ def study(
     from evaluate.commands.study import run
 
     _exit(run(spec, out, workers, as_json=json))
+
+
+@app.command(short_help="Tables, plots and a page of a study.")
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.")],
+    *,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder for the results.", show_default="DIR/report")
+    ] = None,
+    format_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="html, md, tex, csv, svg, pdf, png or parquet; repeat for several.",
+            show_default="all",
+        ),
+    ] = None,
+    published: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="CSV file of published times to stand beside, or `paper`.", show_default=False
+        ),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Write the tables and plots of a study, and report.html: all of them on one page, with every scene and its plan.
+
+    Example:  manipuzzle report out/study --published paper
+    """
+    from evaluate.commands.report import run
+
+    _exit(run(folder, out, format_ or [], published, as_json=json))
 
 
 @app.command(short_help="Time the parts, with peers beside them.")

@@ -12,6 +12,7 @@ import polars as pl
 from converter.plan import Plan, plan_from_document
 from converter.scene import Scene
 from evaluate.scene_statistics import SceneStatistics, geometry_statistics_of, is_monotone
+from evaluate.store import StoredTrials
 from evaluate.trial_frame import reading
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
@@ -21,15 +22,6 @@ CACHE = "scene_statistics.json"
 
 CACHE_VERSION = 1
 
-_BEST = """
-SELECT scene_hash, plan FROM trial WHERE rowid IN (
-    SELECT id FROM (
-        SELECT rowid AS id, row_number() OVER (
-            PARTITION BY scene_hash ORDER BY verified DESC, pick_places, path_length_m, rowid
-        ) AS place FROM trial WHERE plan IS NOT NULL
-    ) WHERE place = 1
-)"""
-
 
 @dataclass(frozen=True)
 class SceneRecord:
@@ -37,16 +29,15 @@ class SceneRecord:
 
     Attributes:
         name: As in the tables.
-        scene: The scene; None if the study holds no plan for it, and so does not hold its geometry.
-        plan: The verified plan with the fewest pick-places, and of these the shortest; else one that did not pass
-            verification; else None.
-        statistics: None without the scene.
+        scene: The scene.
+        plan: The verified plan with the fewest pick-places, and of these the shortest; None without one.
+        statistics: `pick_places` and `monotone` are those of `plan`.
     """
 
     name: str
-    scene: Scene | None
+    scene: Scene
     plan: Plan | None
-    statistics: SceneStatistics | None
+    statistics: SceneStatistics
 
 
 def scene_records(folder: Path, frame: pl.DataFrame) -> Iterator[SceneRecord]:
@@ -56,25 +47,28 @@ def scene_records(folder: Path, frame: pl.DataFrame) -> Iterator[SceneRecord]:
         InputError: the database is damaged.
     """
     cache = _Cache(folder / CACHE)
-    names = frame.group_by("scene", maintain_order=True).agg(pl.col("scene_hash").first())
-    with reading(folder) as connection:
-        plans = dict(connection.execute(_BEST).fetchall())
-        verified = set(frame.filter("solved")["scene_hash"].unique())
-    for name, hash_ in names.iter_rows():
-        plan = _plan(plans.pop(hash_, None), str(folder))
-        scene = None if plan is None or plan.scene_data is None else replace(plan.scene_data, name=name)
-        statistics = None if scene is None else cache.statistics(hash_, scene)
-        if plan is not None and statistics is not None and hash_ in verified:
-            statistics = replace(statistics, pick_places=plan.pick_places, monotone=is_monotone(plan))
-        yield SceneRecord(name, scene, plan, statistics)
+    named = frame.group_by("scene", maintain_order=True).agg(pl.col("scene_hash").first())
+    ranked = frame.filter("solved").sort("pick_places", "path_length_m", "row")
+    best = dict(ranked.group_by("scene").agg(pl.col("row").first()).iter_rows())
+    with StoredTrials(folder) as store, reading(folder) as connection:
+        scenes = {scene.geometry_hash: scene for scene in store.scenes()}
+        for name, hash_ in named.iter_rows():
+            if (scene := scenes.get(hash_)) is None:
+                continue
+            found = connection.execute("SELECT plan FROM trial WHERE rowid = ?", (best.get(name),)).fetchone()
+            plan = _plan(found, str(folder))
+            statistics = cache.statistics(hash_, scene)
+            if plan is not None:
+                statistics = replace(statistics, pick_places=plan.pick_places, monotone=is_monotone(plan))
+            yield SceneRecord(name, scene, plan, statistics)
     cache.save()
 
 
-def _plan(blob: bytes | None, where: str) -> Plan | None:
-    if blob is None:
+def _plan(found: tuple[bytes | None] | None, where: str) -> Plan | None:
+    if found is None or found[0] is None:
         return None
     try:
-        document = json.loads(zlib.decompress(blob))
+        document = json.loads(zlib.decompress(found[0]))
     except (zlib.error, ValueError) as error:
         raise InputError(where, f"a stored plan is damaged: {error}") from None
     return plan_from_document(document, where)
@@ -88,13 +82,10 @@ class _Cache:
         self._known = _read(path)
         self._changed = False
 
-    def statistics(self, hash_: str, scene: Scene) -> SceneStatistics | None:
-        """The statistics of a scene; None if the scene is invalid."""
+    def statistics(self, hash_: str, scene: Scene) -> SceneStatistics:
+        """The statistics of a scene."""
         if hash_ not in self._known:
-            try:
-                self._known[hash_] = geometry_statistics_of(scene)
-            except InputError:
-                return None
+            self._known[hash_] = geometry_statistics_of(scene)
             self._changed = True
         return self._known[hash_]
 

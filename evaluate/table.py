@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 _LATEX = str.maketrans(
@@ -110,6 +110,10 @@ def as_csv(table: Table) -> str:
     writer.writerow(columns)
     writer.writerows(rows)
     return file.getvalue()
+
+
+WRITERS: dict[str, Callable[[Table], str]] = {"md": as_markdown, "tex": as_latex, "csv": as_csv}
+"""The text of a table's file by its suffix."""
 
 
 def _markdown_text(text: str) -> str:

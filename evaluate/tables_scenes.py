@@ -8,6 +8,7 @@ import polars as pl
 
 from evaluate.number_text import three_digits
 from evaluate.published import TIME_COLUMNS, PublishedTime, scene_key
+from evaluate.scene_statistics import SceneStatistics
 from evaluate.table import BLANK, Entry, Table
 from evaluate.trial_frame import names_in
 
@@ -110,6 +111,47 @@ def plans_table(frame: pl.DataFrame) -> Table:
     return Table("plans", "Plans by scene and method", note, ("scene", *heads), tuple(rows))
 
 
+def facts_table(facts: Mapping[str, SceneStatistics]) -> Table:
+    """What makes each scene hard."""
+    rows = []
+    for name, statistics in facts.items():
+        must_move, pick_places = statistics.must_move, statistics.pick_places
+        rows.append(
+            (
+                Entry(name),
+                _number_entry(statistics.objects),
+                _number_entry(statistics.walls),
+                Entry(f"{statistics.wall_density:.2f}", value=statistics.wall_density),
+                Entry(_YES[statistics.occluded]),
+                Entry(f"{statistics.narrowest_passage_m:.3f}", value=statistics.narrowest_passage_m),
+                BLANK if must_move is None else _number_entry(must_move),
+                BLANK if pick_places is None else _number_entry(pick_places),
+                BLANK if statistics.monotone is None else Entry(_YES[statistics.monotone]),
+            )
+        )
+    columns = (
+        "scene",
+        "objects",
+        "walls",
+        "wall density",
+        "occluded",
+        "narrowest passage [m]",
+        "must move",
+        "fewest pick-places",
+        "monotone",
+    )
+    note = (
+        "Walls inside the room and the share of it that they cover; whether the agent sees the goal-object at the "
+        "start; width of the narrowest passage on the agent's widest way to goal-object and goal; objects that every "
+        "plan must move at least; fewest pick-places of all plans of this study, and whether that plan moves every "
+        "object at most once."
+    )
+    return Table("facts", "What the scenes are like", note, columns, tuple(rows))
+
+
+_YES = {True: "yes", False: "no"}
+
+
 def time_text(cell: Summary, *, net: bool = False) -> str:
     """`mean (deviation)`, with the net time in brackets if wanted, and the percentage solved if it is below 100."""
     if cell.mean is None or cell.deviation is None:
@@ -152,6 +194,10 @@ def _best(scene: str, methods: Sequence[str], cells: Summaries) -> set[str]:
 
 def _mean_entry(value: float | None, *, bold: bool) -> Entry:
     return Entry("-") if value is None else Entry(f"{value:.1f}", bold, value)
+
+
+def _number_entry(value: int) -> Entry:
+    return Entry(str(value), value=value)
 
 
 def _same(a: float, b: float) -> bool:

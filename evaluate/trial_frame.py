@@ -15,7 +15,7 @@ import numpy as np
 import polars as pl
 
 from evaluate.statistics import FloatArray
-from evaluate.store import FILE_NAME
+from evaluate.store import FILE_NAME, StoredTrials, StudyRecord
 from pcg.errors import InputError
 from pcg.files import replacing
 
@@ -23,6 +23,7 @@ BATCH = 20_000
 """Rows that are in memory as Python objects at a time."""
 
 _COLUMNS = {
+    "row": ("rowid", pl.Int64),
     "scene": ("scene", pl.String),
     "scene_hash": ("scene_hash", pl.String),
     "method": ("method", pl.String),
@@ -36,7 +37,8 @@ _COLUMNS = {
     "path_length_m": ("path_length_m", pl.Float64),
     "pick_places": ("pick_places", pl.Int64),
     "time_limit": ("CAST(json_extract(settings, '$.time_limit') AS REAL)", pl.Float64),
-    "preset": ("CAST(json_extract(settings, '$.preset') AS TEXT)", pl.String),
+    "settings": ("CAST(json_extract(settings, '$.preset') AS TEXT)", pl.String),
+    "preset": ("preset", pl.String),
 }
 """Columns of the frame: what they are in SQL, and their types."""
 
@@ -48,11 +50,11 @@ def reading(folder: Path) -> Iterator[sqlite3.Connection]:
     Raises:
         InputError: there is none in `folder`, or it is damaged.
     """
-    path = folder / FILE_NAME
-    if not path.is_file():
-        raise InputError(str(folder), f"no study here: there is no {FILE_NAME}")
+    # Opening it this way checks its version.
+    with StoredTrials(folder):
+        path = folder / FILE_NAME
     try:
-        with contextlib.closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as connection:
+        with contextlib.closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)) as connection:
             yield connection
     except sqlite3.Error as error:
         raise InputError(str(path), f"not usable as a study's database: {error}") from None
@@ -61,29 +63,48 @@ def reading(folder: Path) -> Iterator[sqlite3.Connection]:
 def read_trials(folder: Path) -> pl.DataFrame:
     """One row a trial with the columns of `_COLUMNS`.
 
-    Names are made to tell apart what differs: scenes of one name and different geometry get the beginning of their
-    hash, methods of one name and different settings get the settings in which they differ.
+    Only the trials of the study that last ran in the folder count, if it holds others too. Names are made to tell
+    apart what differs: scenes get their geometry preset if there are several, and the beginning of their hash if that
+    is not enough; methods of one name get the settings in which they differ.
 
     Raises:
         InputError: there is no study in `folder`, its database is damaged, or it holds no trials.
     """
     expressions = ", ".join(f"{sql} AS {name}" for name, (sql, _) in _COLUMNS.items())
     schema = {name: type_ for name, (_, type_) in _COLUMNS.items()}
-    with reading(folder) as connection:
+    with StoredTrials(folder) as store, reading(folder) as connection:
         rows = connection.execute(f"SELECT {expressions} FROM trial ORDER BY rowid")  # noqa: S608  # no outside text
         frames = [pl.DataFrame(batch, schema=schema, orient="row") for batch in _batches(rows)]
         labels = _method_labels(connection)
-    if not frames:
+        study = store.study()
+    frame = pl.concat([pl.DataFrame(schema=schema), *frames])
+    frame = frame if study is None else _of_study(frame, study)
+    if frame.is_empty():
         raise InputError(str(folder), "the study holds no trials yet")
     names = pl.DataFrame(labels, schema=["method", "settings_hash", "label"], orient="row")
-    frame = pl.concat(frames).join(names, on=["method", "settings_hash"], how="left", maintain_order="left")
-    hashes = pl.col("scene_hash").n_unique().over("scene")
-    return frame.with_columns(
-        method=pl.col("label"),
-        scene=pl.when(hashes > 1)
-        .then(pl.format("{} [{}]", "scene", pl.col("scene_hash").str.head(4)))
-        .otherwise(pl.col("scene")),
-    ).drop("label")
+    frame = frame.join(names, on=["method", "settings_hash"], how="left", maintain_order="left")
+    return _with_scene_labels(frame.with_columns(method=pl.col("label")).drop("label"))
+
+
+def _of_study(frame: pl.DataFrame, study: StudyRecord) -> pl.DataFrame:
+    """The trials of a study, in the order of its scenes and methods."""
+    scenes = pl.DataFrame(study.scenes, schema=["scene", "scene_hash"], orient="row").with_row_index("scene_place")
+    methods = pl.DataFrame(study.methods, schema=["method", "settings_hash"], orient="row").with_row_index("place")
+    return (
+        frame.filter(pl.col("seed").is_in(study.seeds))
+        .join(scenes, on=["scene", "scene_hash"])
+        .join(methods, on=["method", "settings_hash"])
+        .sort("scene_place", "place", "seed", maintain_order=True)
+        .drop("scene_place", "place")
+    )
+
+
+def _with_scene_labels(frame: pl.DataFrame) -> pl.DataFrame:
+    if frame["preset"].n_unique() > 1:
+        frame = frame.with_columns(scene=pl.format("{} ({})", "scene", pl.col("preset").fill_null("other")))
+    is_unique = pl.col("scene_hash").n_unique().over("scene") == 1
+    marked = pl.format("{} [{}]", "scene", pl.col("scene_hash").str.head(4))
+    return frame.with_columns(scene=pl.when(is_unique).then("scene").otherwise(marked))
 
 
 def planning_times(frame: pl.DataFrame, *, column: str = "time_s") -> dict[str, FloatArray]:
