@@ -16,6 +16,7 @@ of the first target: nothing else is pruned, so `UNSOLVABLE` is a proof.
 """
 
 import heapq
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -56,7 +57,7 @@ def live_cells(wall: ByteArray, width: int, targets: Int32Array) -> ByteArray:
 
 
 @njit(cache=True)
-def _hash(crates: Int16Array, goal: int, player: int) -> int:
+def _hash(crates: Int16Array, goal: int, player: int) -> np.int64:
     """FNV-1a over the numbers of a state, with a final mix for the low bits."""
     value = np.uint64(14695981039346656037)
     for crate in crates:
@@ -75,7 +76,7 @@ def _slot(
     crates: Int16Array,
     goal: int,
     player: int,
-) -> int:
+) -> np.int64:
     """The slot of the table that holds this state, or the empty one where it belongs."""
     mask = table.size - 1
     slot = _hash(crates, goal, player) & mask
@@ -183,15 +184,15 @@ def _path(parents: Int32Array, pushed: Int16Array, steps: Int16Array, index: int
 
 
 @njit(cache=True)
-def _grown(array: Int32Array, capacity: int) -> Int32Array:
-    larger = np.empty(capacity, dtype=array.dtype)
+def _grown(array: npt.NDArray[Any], capacity: int) -> npt.NDArray[Any]:
+    larger: npt.NDArray[Any] = np.empty(capacity, dtype=array.dtype)
     larger[: array.size] = array
     return larger
 
 
 @njit(cache=True)
-def _grown_rows(array: Int16Array, capacity: int) -> Int16Array:
-    larger = np.empty((capacity, array.shape[1]), dtype=array.dtype)
+def _grown_rows(array: npt.NDArray[Any], capacity: int) -> npt.NDArray[Any]:
+    larger: npt.NDArray[Any] = np.empty((capacity, array.shape[1]), dtype=array.dtype)
     larger[: array.shape[0]] = array
     return larger
 

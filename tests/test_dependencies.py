@@ -23,28 +23,43 @@ HOMES = {
         "planner/nlp.py",
     },
     "cv2": {"converter/raster.py", "converter/image_file.py"},
+    "gymnasium": {"pcg/train.py"},
     "jinja2": {"converter/viewer_page.py"},
+    "matplotlib": {"pcg/learning_curve.py"},
     "numba": {
         "pcg/random_kernel.py",
         "pcg/solver_kernel.py",
+        "pcg/statistics_kernel.py",
         "planner/kernel.py",
         "planner/rrt_connect.py",
         "planner/shortcut.py",
         "planner/subgoals_bottleneck.py",
         "planner/visibility.py",
     },
+    "onnx": {"pcg/export_policy.py"},
+    "onnxruntime": {"pcg/policy.py"},
     "ompl": {"evaluate/bench_peers.py", "planner/motion_ompl.py"},
     "pymunk": {"converter/preview.py"},
     "rich": {"evaluate/output.py"},
     "scipy": {"planner/subgoals_bottleneck.py"},
     "shapely": {"evaluate/bench_peers.py", "planner/penetration.py"},
+    "stable_baselines3": {"pcg/train.py"},
+    "torch": {"pcg/train.py"},
     "typer": {"evaluate/cli.py"},
     "yaml": {"pcg/yaml_text.py"},
 }
 """The only modules that import a library."""
 
 EVERYWHERE = {"numpy", "pydantic"}
-DISTRIBUTIONS = {"PIL": "pillow", "cv2": "opencv-python-headless", "yaml": "pyyaml"}
+LEARNING = {"onnx", "stable_baselines3", "torch"}
+"""Of the extra `rl`."""
+
+DISTRIBUTIONS = {
+    "PIL": "pillow",
+    "cv2": "opencv-python-headless",
+    "stable_baselines3": "stable-baselines3",
+    "yaml": "pyyaml",
+}
 """Names on the package index, where they differ from the import's."""
 
 MODULES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
@@ -86,7 +101,9 @@ def test_every_library_is_declared():
     """What is imported is what is installed, nothing less and nothing more."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     declared = {requirement.split(">=")[0] for requirement in project["dependencies"]}
-    assert declared == {DISTRIBUTIONS.get(name, name) for name in HOMES.keys() | EVERYWHERE}
+    assert declared == {DISTRIBUTIONS.get(name, name) for name in (HOMES.keys() | EVERYWHERE) - LEARNING}
+    extra = {requirement.split(">=")[0] for requirement in project["optional-dependencies"]["rl"]}
+    assert extra >= {DISTRIBUTIONS.get(name, name) for name in LEARNING}
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,194 @@
+"""Many editing episodes at once: the state and the rules that all environments share.
+
+Every episode starts from a random map and ends with success (every term of the reward's distance is 0) or when a budget
+is spent: a share of the tiles for changes, a share of the tiles for steps. Budgets are properties of the settings, so
+they always belong to the size at hand.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pcg.level import TileArray
+from pcg.representation import KEEP, REPRESENTATIONS, IntArray, Representation
+from pcg.reward import Control, FloatArray, RewardSettings, distance, reward
+from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, VerdictCache, measure
+
+
+@dataclass(frozen=True)
+class EpisodeSettings:
+    """Size, budgets and start of an episode.
+
+    Attributes:
+        representation: narrow, turtle or wide.
+        rows: Rows.
+        columns: Columns.
+        change_share: Tiles that may be changed, by the number of tiles.
+        step_share: Steps of an episode, by the number of tiles.
+        thing_share: Chance of a cell to hold a player at the start; likewise a crate, a target.
+        wall_spread: The chance of a wall is that of the middle of the wanted band, plus or minus up to this.
+        reward: What is wanted.
+        max_states: Limit of the solver.
+    """
+
+    representation: str = "narrow"
+    rows: int = 10
+    columns: int = 10
+    change_share: float = 0.2
+    step_share: float = 2.0
+    thing_share: float = 0.01
+    wall_spread: float = 0.05
+    reward: RewardSettings = field(default_factory=RewardSettings)
+    max_states: int = 20_000
+
+    def __post_init__(self) -> None:
+        if self.representation not in REPRESENTATIONS:
+            raise ValueError(f"representation {self.representation!r} is none of {', '.join(REPRESENTATIONS)}")
+        if min(self.rows, self.columns) < 1:
+            raise ValueError(f"rows and columns must be at least 1, found {self.rows} and {self.columns}")
+
+    @property
+    def cells(self) -> int:
+        """Number of tiles."""
+        return self.rows * self.columns
+
+    @property
+    def max_changes(self) -> int:
+        """Tiles that may be changed in an episode."""
+        return max(1, round(self.change_share * self.cells))
+
+    @property
+    def max_steps(self) -> int:
+        """Steps of an episode."""
+        return max(1, round(self.step_share * self.cells))
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """How n episodes begin.
+
+    Attributes:
+        maps: (n, rows, columns) tiles.
+        frozen: (n, rows, columns) flags of the cells that cannot be changed.
+        controls: (n, len(Control)).
+    """
+
+    maps: TileArray
+    frozen: TileArray
+    controls: FloatArray
+
+
+Beginner = Callable[[np.random.Generator, int], Beginning]
+"""Draws the beginning of n episodes."""
+
+
+def random_maps(rng: np.random.Generator, controls: FloatArray, settings: EpisodeSettings) -> TileArray:
+    """(n, rows, columns) maps with independent tiles: walls at about the wanted density, a few things, else floor."""
+    n = len(controls)
+    middle = controls[:, [Control.WALLS_LOW, Control.WALLS_HIGH]].mean(axis=1) / settings.cells
+    chance = np.clip(middle + rng.uniform(-settings.wall_spread, settings.wall_spread, n), 0.0, 1.0)
+    drawn = rng.random((n, settings.rows, settings.columns)) - chance[:, None, None]
+    maps = np.full(drawn.shape, FLOOR, dtype=np.uint8)
+    for k, tile in enumerate((PLAYER, CRATE, TARGET)):
+        maps[(drawn >= k * settings.thing_share) & (drawn < (k + 1) * settings.thing_share)] = tile
+    maps[drawn < 0] = WALL
+    return maps
+
+
+@dataclass(frozen=True)
+class Transition:
+    """What a step did to n episodes.
+
+    Attributes:
+        reward: (n,).
+        changed: (n,) whether a tile was changed.
+        terminated: (n,) whether everything is met.
+        truncated: (n,) whether a budget is spent without success.
+    """
+
+    reward: FloatArray
+    changed: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    terminated: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    truncated: np.ndarray[tuple[int], np.dtype[np.bool_]]
+
+
+class Episodes:
+    """n episodes that are stepped together; `begin` starts those that are named anew.
+
+    Attributes:
+        settings: Size, budgets, what is wanted.
+        maps: (n, rows, columns) tiles.
+        frozen: (n, rows, columns) flags.
+        controls: (n, len(Control)).
+        statistics: (n, len(Column)).
+        distance: (n,) to what is wanted.
+        steps: (n,) steps done.
+        changes: (n,) changes done.
+        cache: Of the solver's verdicts.
+    """
+
+    def __init__(self, settings: EpisodeSettings, n: int, archive: TileArray | None = None) -> None:
+        shape = settings.rows, settings.columns
+        self.settings = settings
+        self.maps = np.zeros((n, *shape), dtype=np.uint8)
+        self.frozen = np.zeros((n, *shape), dtype=np.uint8)
+        self.controls = np.zeros((n, len(Control)))
+        self.statistics = np.zeros((n, len(Column)), dtype=np.int32)
+        self.distance = np.zeros(n)
+        self.steps = np.zeros(n, dtype=np.int64)
+        self.changes = np.zeros(n, dtype=np.int64)
+        self.cache = VerdictCache.empty()
+        self._archive = np.zeros((0, *shape), dtype=np.uint8) if archive is None else archive
+        self._representation: Representation = REPRESENTATIONS[settings.representation](shape, n)
+        self._numbers = np.arange(n)
+
+    @property
+    def n(self) -> int:
+        """Number of episodes."""
+        return len(self.maps)
+
+    @property
+    def representation(self) -> Representation:
+        """How maps are edited."""
+        return self._representation
+
+    def begin(self, rng: np.random.Generator, episodes: IntArray, beginning: Beginning) -> None:
+        """Starts the episodes with these numbers anew."""
+        self.maps[episodes] = beginning.maps
+        self.frozen[episodes] = beginning.frozen
+        self.controls[episodes] = beginning.controls
+        self.steps[episodes] = 0
+        self.changes[episodes] = 0
+        self._representation.begin(rng, episodes)
+        self._measure(episodes)
+        self.distance[episodes] = distance(self.statistics[episodes], self.controls[episodes], self.settings.reward)
+
+    def step(self, actions: IntArray) -> Transition:
+        """Carries out one action in each episode."""
+        cells, tiles = self._representation.step(actions)
+        maps, frozen = self.maps.reshape(self.n, -1), self.frozen.reshape(self.n, -1)
+        changed = (tiles != KEEP) & (tiles != maps[self._numbers, cells]) & (frozen[self._numbers, cells] == 0)
+        episodes = np.flatnonzero(changed)
+        maps[episodes, cells[episodes]] = tiles[episodes]
+        self._measure(episodes)
+        after = self.distance.copy()
+        after[episodes] = distance(self.statistics[episodes], self.controls[episodes], self.settings.reward)
+        gained = reward(self.distance, after, self.settings.reward)
+        self.distance = after
+        self.steps += 1
+        self.changes += changed
+        terminated = after == 0
+        spent = (self.steps >= self.settings.max_steps) | (self.changes >= self.settings.max_changes)
+        return Transition(gained, changed, terminated, spent & ~terminated)
+
+    def _measure(self, episodes: IntArray) -> None:
+        measure(
+            self.maps,
+            episodes,
+            self.statistics,
+            self.cache,
+            self._archive,
+            max_crates=self.settings.reward.crates,
+            max_states=self.settings.max_states,
+        )

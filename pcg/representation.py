@@ -1,0 +1,138 @@
+"""How an agent edits a map: narrow, turtle or wide (Khalifa et al., PCGRL, AIIDE 2020).
+
+- *narrow*: the environment goes from cell to cell, in an order drawn for each episode; the agent keeps the tile there or
+  replaces it. Actions: 0 keep, 1 + t write tile t.
+- *turtle*: the agent stands on a cell and walks left, up, right, down (actions 0 to 3) or writes tile t (action 4 + t).
+- *wide*: the agent writes any tile anywhere: action 5 * cell + t.
+
+Cells are numbered `row * columns + column`, tiles as in `Tile`, the first five of it. All methods work on n episodes at
+once.
+"""
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from pcg.grid import DIRECTIONS, Cell
+
+IntArray = npt.NDArray[np.int64]
+
+N_TILES = 5
+"""Tiles that an agent can write: floor, wall, player, crate, target."""
+
+KEEP = -1
+"""Written in place of a tile where nothing is written."""
+
+
+class Representation(Protocol):
+    """A way to edit maps of one shape."""
+
+    @property
+    def has_position(self) -> bool:
+        """Whether the agent edits the map around one cell."""
+
+    @property
+    def n_actions(self) -> int:
+        """Actions are 0 to n_actions - 1."""
+
+    def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
+        """Draws what the given episodes (their numbers) need at their start."""
+
+    def positions(self) -> IntArray:
+        """(n,) cell of each episode's agent; 0 if it has none."""
+
+    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+        """Carries out one action in each episode.
+
+        Args:
+            actions: (n,).
+
+        Returns:
+            (n,) cells to write to and (n,) tiles to write, `KEEP` for none.
+        """
+
+
+class Narrow:
+    """Visits all cells in random order, again and again."""
+
+    has_position = True
+    n_actions = 1 + N_TILES
+
+    def __init__(self, shape: Cell, n: int) -> None:
+        cells = shape[0] * shape[1]
+        self._order = np.tile(np.arange(cells), (n, 1))
+        self._visited = np.zeros(n, dtype=np.int64)
+        self._episodes = np.arange(n)
+
+    def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
+        """Draws the order of the cells."""
+        self._order[episodes] = rng.permuted(self._order[episodes], axis=1)
+        self._visited[episodes] = 0
+
+    def positions(self) -> IntArray:
+        """(n,) cells that are visited."""
+        return self._order[self._episodes, self._visited]
+
+    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+        """Keeps or writes the tile, and goes on to the next cell."""
+        cells = self.positions()
+        self._visited = (self._visited + 1) % self._order.shape[1]
+        return cells, actions - 1
+
+
+class Turtle:
+    """Walks over the map from a random cell; a step over the edge does nothing."""
+
+    has_position = True
+    n_actions = len(DIRECTIONS) + N_TILES
+
+    def __init__(self, shape: Cell, n: int) -> None:
+        self._shape = shape
+        self._row = np.zeros(n, dtype=np.int64)
+        self._column = np.zeros(n, dtype=np.int64)
+        self._down = np.array([step[0] for step in DIRECTIONS.values()] + N_TILES * [0])
+        self._right = np.array([step[1] for step in DIRECTIONS.values()] + N_TILES * [0])
+
+    def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
+        """Draws the cell where the turtle stands."""
+        self._row[episodes] = rng.integers(self._shape[0], size=len(episodes))
+        self._column[episodes] = rng.integers(self._shape[1], size=len(episodes))
+
+    def positions(self) -> IntArray:
+        """(n,) cells where the turtles stand."""
+        return self._row * self._shape[1] + self._column
+
+    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+        """Walks, or writes the tile where the turtle stands."""
+        cells = self.positions()
+        self._row = np.clip(self._row + self._down[actions], 0, self._shape[0] - 1)
+        self._column = np.clip(self._column + self._right[actions], 0, self._shape[1] - 1)
+        return cells, np.maximum(actions - len(DIRECTIONS), KEEP)
+
+
+class Wide:
+    """Writes anywhere."""
+
+    has_position = False
+
+    def __init__(self, shape: Cell, n: int) -> None:
+        self.n_actions = shape[0] * shape[1] * N_TILES
+        self._nowhere = np.zeros(n, dtype=np.int64)
+
+    def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
+        """Nothing is drawn."""
+        del rng, episodes
+
+    def positions(self) -> IntArray:
+        """(n,) zeros."""
+        return self._nowhere
+
+    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+        """Writes the tile."""
+        return actions // N_TILES, actions % N_TILES
+
+
+REPRESENTATIONS: dict[str, Callable[[Cell, int], Representation]] = {"narrow": Narrow, "turtle": Turtle, "wide": Wide}
+"""By name; called with a shape and the number of episodes."""
