@@ -41,9 +41,12 @@ class RandomSource:
 
     Attributes:
         max_states: Limit of the solver, None for its default.
+        redraws_density: Draws the density anew after each chunk of attempts. That is faster where few densities can meet
+            the request, and prefers those.
     """
 
     max_states: int | None = None
+    redraws_density: bool = False
     representation: None = None
     weights_hash: None = None
 
@@ -64,8 +67,8 @@ class RandomSource:
         """Proposals without level, each after a chunk of attempts, then one with a level."""
         from pcg import random_kernel as kernel  # noqa: PLC0415  # importing pcg must not load Numba
 
-        density = rng.uniform(*_feasible_density(request, frozen))
-        walls = round(density * request.cells) - _count(frozen, Tile.WALL)
+        band, frozen_walls = _feasible_density(request, frozen), _count(frozen, Tile.WALL)
+        density = rng.uniform(*band)
         tiles = np.empty(frozen.shape, dtype=np.uint8)
         dependency = {None: kernel.EITHER, False: kernel.NEVER, True: kernel.ALWAYS}[request.dependency]
         limit = (
@@ -73,6 +76,7 @@ class RandomSource:
         )
         level = None
         while level is None:
+            walls = round(density * request.cells) - frozen_walls
             counts = np.zeros(len(_REASONS), dtype=np.int64)
             found = kernel.draw_until(
                 rng, frozen.tiles, walls, things, *request.pushes, dependency, limit, CHUNK, tiles, counts
@@ -89,6 +93,8 @@ class RandomSource:
                     level, solution = outcome
             steps = attempts * (walls + things.size)
             yield Proposal(level, solution, attempts, dict(rejected), steps, {"wall_density": density})
+            if self.redraws_density:
+                density = rng.uniform(*band)
 
 
 def _start(request: Request) -> tuple[FrozenTiles, TileArray]:
