@@ -93,6 +93,13 @@ def _asked(metavar: str, text: str, default: str, **limits: float) -> Any:
 
 Workers = Annotated[int, typer.Option(metavar="N", min=1, max=1024, help="Processes that share the work.")]
 
+Demonstrations = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR", help="Demonstrations {scene}.yaml for method Hum+R, instead of data/human.", show_default=False
+    ),
+]
+
 
 def main() -> None:
     """Entry point of the `manipuzzle` program."""
@@ -305,6 +312,13 @@ def solve(
         float, typer.Option(metavar="SECONDS", min=0, max=1e9, help="Time for improving each plan that is found.")
     ] = 0.0,
     settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="NAME=VALUE", help="One setting of the planner; repeat for more.", show_default=False
+        ),
+    ] = None,
+    demonstrations: Demonstrations = None,
     preset: Preset = None,
     tolerance: Tolerance = None,
     json: Json = False,
@@ -313,10 +327,11 @@ def solve(
 
     Example:  manipuzzle solve data/puzzles/cube-free.yaml --out out/plans
     """
-    from evaluate.commands.solve import run
-    from planner import settings_for
+    from evaluate.commands.solve import run, settings_of
 
-    of_planner = settings_for(settings, method=method, time_limit=time_limit, improve=improve)
+    of_planner = settings_of(
+        settings, set_ or [], demonstrations, method=method, time_limit=time_limit, improve=improve
+    )
     _exit(run(scenes, out, of_planner, seed, preset=preset, tolerance=tolerance, as_json=json))
 
 
@@ -434,6 +449,15 @@ def study(
     *,
     out: Out,
     workers: Annotated[int, typer.Option(metavar="N", min=1, max=1024, help="Processes that solve.")] = 1,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Dask scheduler whose workers solve instead, or local:N for one of its own.",
+            show_default=False,
+        ),
+    ] = None,
+    demonstrations: Demonstrations = None,
     json: Json = False,
 ) -> None:
     """Solve every scene with every method and seed; DIR/trials.sqlite holds the trials, DIR/table.md the table.
@@ -444,7 +468,7 @@ def study(
     """
     from evaluate.commands.study import run
 
-    _exit(run(spec, out, workers, as_json=json))
+    _exit(run(spec, out, workers=workers, cluster=cluster, demonstrations=demonstrations, as_json=json))
 
 
 @app.command(short_help="Tables, plots and a page of a study.")

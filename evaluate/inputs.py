@@ -1,7 +1,7 @@
 """What commands read: scenes, levels and plans, all of them before the work begins."""
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from converter.scene import Scene
 from evaluate.names import require_distinct, safe_name
 from pcg.errors import InputError
 from pcg.level import Level
-from pcg.level_set import read_level_set
+from pcg.level_set import iter_level_set
 
 SCENE_SUFFIXES = (".yaml", ".yml", ".g")
 PLAN_SUFFIXES = (".json",)
@@ -84,7 +84,15 @@ def read_playable_levels(path: Path) -> list[Level]:
     Raises:
         InputError: naming file, line or level, and reason.
     """
-    levels = read_level_set(path)
-    for level in levels:
+    return list(iter_playable_levels(path))
+
+
+def iter_playable_levels(path: Path) -> Iterator[Level]:
+    """The levels of `read_playable_levels` one by one, so that they need not all be held.
+
+    Raises:
+        InputError: naming file, line or level, and reason, when that level is reached.
+    """
+    for level in iter_level_set(path):
         level.require_playable(f"{path}: level {level.name!r}")
-    return levels
+        yield level

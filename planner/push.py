@@ -19,7 +19,7 @@ import numpy as np
 from pydantic import BaseModel, Field
 
 from converter.plan import Status
-from converter.scene import Scene
+from converter.scene import NUMERIC_SLACK, Scene
 from converter.shape import FloatArray
 from pcg.errors import InputError
 from pcg.grid import DIRECTIONS, Cell
@@ -29,6 +29,8 @@ from pcg.solver import solve as solve_level
 from pcg.validation import validated
 from pcg.xsb import parse_levels
 from planner.assemble import segments_of, subgoals_of
+from planner.configuration_space import agent_obstacles
+from planner.kernel import points_free
 from planner.pick_place import PickPlace, Region
 from planner.problem import Problem
 from planner.result import PlanResult, Progress
@@ -192,13 +194,28 @@ class _Lift:
         return PickPlace(index, approach, np.array([start, start + by]), configuration.objects[index] + by)
 
     def _behind(self, index: int, direction: FloatArray) -> FloatArray:
-        """The agent centre (2,) [m], relative to object `index`, at which it touches the object from behind."""
-        body = self._problem.scene.objects[index]
-        reach = max(
-            float((core @ -direction).max()) + part.edge_radius
-            for core, part in zip(body.cores, body.parts, strict=True)
+        """The agent centre (2,) [m], relative to object `index`, at which it touches the object from behind.
+
+        That is where the ray from the object's centre leaves the places at which the agent overlaps it, found by
+        bisection; all of a convex object is before the tangent at its hindmost point.
+        """
+        agent, body = self._problem.scene.agent, self._problem.scene.objects[index]
+        overlap = agent_obstacles(agent, body, tolerance=0.0)
+        inside, outside = (
+            0.0,
+            agent.radius
+            + max(
+                float((core @ -direction).max()) + part.edge_radius
+                for core, part in zip(body.cores, body.parts, strict=True)
+            ),
         )
-        return -direction * (reach + self._problem.scene.agent.radius)
+        while outside - inside > NUMERIC_SLACK:
+            middle = (inside + outside) / 2
+            if points_free(-direction[None] * middle, *overlap.arrays)[0]:
+                outside = middle
+            else:
+                inside = middle
+        return -direction * outside
 
 
 def _runs(level: Level, solution: Solution) -> Iterator[_Run]:

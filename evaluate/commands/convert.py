@@ -1,74 +1,125 @@
-"""`manipuzzle convert`: levels and scenes to scene files."""
+"""`manipuzzle convert`: levels and scenes to scene files.
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+All inputs are read twice: first to refuse what cannot be used before any work is done, then one by one. So memory does
+not grow with the number of levels, but for their names.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from converter.convert import ConversionSettings, convert_level
 from converter.formats import write_scene
 from converter.preset import CLEAR, PRESETS
 from converter.scene import Scene
-from evaluate.inputs import (
-    adapted,
-    is_scene,
-    read_playable_levels,
-    read_scene_file,
-    require_choice,
-    require_writable,
-)
+from evaluate.inputs import adapted, is_scene, iter_playable_levels, read_scene_file, require_choice, require_writable
 from evaluate.names import require_distinct, safe_name
 from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.parallel import in_order
+from pcg.errors import InputError
 from pcg.level import Level
 
 FORMATS = {"yaml": ".yaml", "mjcf": ".xml"}
 """Suffix of the files of each format."""
 
 
-def scene_of(level: Level, preset: str | None = None, tolerance: float | None = None) -> Scene:
+@dataclass(frozen=True)
+class Conversion:
+    """What to do with every input.
+
+    Attributes:
+        out: Folder of the results.
+        suffix: Of their files, which names the format.
+        settings: Options for levels.
+        preset: Geometry preset that scenes are changed to; None keeps their geometry.
+        tolerance: Penetration that counts as touching [m]; None keeps that of the preset or scene.
+    """
+
+    out: Path
+    suffix: str
+    settings: ConversionSettings
+    preset: str | None = None
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Input:
+    """A level, or a scene file, and the name of what it becomes."""
+
+    name: str
+    source: Level | Path
+
+
+def conversion_of(out: Path, to: str, preset: str | None, tolerance: float | None, **options: Any) -> Conversion:
+    """What the command's options ask for; `options` are fields of `ConversionSettings`.
+
+    Raises:
+        InputError: naming the option that is not allowed.
+    """
+    require_choice("--to", to, list(FORMATS))
+    if preset is not None:
+        require_choice("--preset", preset, list(PRESETS))
+    return Conversion(out, FORMATS[to], ConversionSettings(preset or CLEAR.name, **options), preset, tolerance)
+
+
+def scene_of(level: Level, settings: ConversionSettings | None = None, tolerance: float | None = None) -> Scene:
     """The scene of a level, called as its file will be.
 
     Args:
         level: A playable level.
-        preset: Geometry preset, `clear` by default.
+        settings: Options; by default those of `ConversionSettings()`.
         tolerance: Penetration that counts as touching [m]; None takes the preset's.
 
     Raises:
         InputError: the level cannot be converted.
     """
-    scene = convert_level(level, ConversionSettings(preset=preset or CLEAR.name))
+    scene = convert_level(level, settings)
     return adapted(replace(scene, name=safe_name(level.name)), None, tolerance)
 
 
-def run(
-    inputs: Sequence[Path], out: Path, *, to: str, preset: str | None, tolerance: float | None, as_json: bool
-) -> bool:
+def run(inputs: Sequence[Path], conversion: Conversion, *, workers: int, as_json: bool) -> bool:
     """Runs the command; see `evaluate.cli.convert`."""
-    require_choice("--to", to, list(FORMATS))
-    if preset is not None:
-        require_choice("--preset", preset, list(PRESETS))
-    jobs = [job for path in inputs for job in _jobs(path, preset, tolerance)]
-    require_distinct([name for name, _ in jobs], "inputs")
-    require_writable(out)
+    names = [source.name for source in _inputs(inputs, conversion)]
+    require_distinct(names, "inputs")
+    require_writable(conversion.out)
     results = []
     with progress() as bar:
-        for name, scene in bar.track(jobs, description="scenes"):
-            file = out / f"{name}{FORMATS[to]}"
-            write_scene(file, scene())
-            results.append((name, str(file)))
+        files = in_order(partial(_convert, conversion), _inputs(inputs, conversion), workers)
+        for name, file in zip(names, bar.track(files, total=len(names), description="scenes"), strict=True):
+            results.append((name, file))
     if as_json:
         print_json({"scenes": [{"scene": name, "file": file} for name, file in results]})
     else:
         print_table(["scene", "file"], results)
-        print_line(f"{len(results)} scenes written to {out}")
+        print_line(f"{len(results)} scenes written to {conversion.out}")
     return True
 
 
-def _jobs(path: Path, preset: str | None, tolerance: float | None) -> list[tuple[str, Callable[[], Scene]]]:
-    """The scenes to be written: their names, and functions that make them; reading is done, conversion is not."""
-    if is_scene(path):
-        scene = read_scene_file(path, preset, tolerance)
-        return [(safe_name(scene.name), lambda: scene)]
-    return [
-        (safe_name(level.name), partial(scene_of, level, preset, tolerance)) for level in read_playable_levels(path)
-    ]
+def _inputs(paths: Sequence[Path], conversion: Conversion) -> Iterator[_Input]:
+    """All inputs one by one, each validated when it is reached."""
+    for path in paths:
+        if is_scene(path):
+            _require_options_of_scenes(path, conversion)
+            yield _Input(safe_name(read_scene_file(path, conversion.preset, conversion.tolerance).name), path)
+        else:
+            for level in iter_playable_levels(path):
+                yield _Input(safe_name(level.name), level)
+
+
+def _require_options_of_scenes(path: Path, conversion: Conversion) -> None:
+    given = conversion.settings
+    if given != ConversionSettings(preset=given.preset):
+        raise InputError(str(path), "sizes and choices apply to levels only; a scene takes --preset and --tolerance")
+
+
+def _convert(conversion: Conversion, given: _Input) -> str:
+    """Writes the scene of an input; its file."""
+    if isinstance(given.source, Level):
+        scene = scene_of(given.source, conversion.settings, conversion.tolerance)
+    else:
+        scene = read_scene_file(given.source, conversion.preset, conversion.tolerance)
+    file = conversion.out / f"{given.name}{conversion.suffix}"
+    write_scene(file, scene)
+    return str(file)
