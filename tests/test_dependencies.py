@@ -23,6 +23,7 @@ HOMES = {
         "planner/nlp.py",
     },
     "cv2": {"converter/raster.py", "converter/image_file.py"},
+    "distributed": {"evaluate/cluster.py"},
     "gymnasium": {"pcg/train.py"},
     "jinja2": {"converter/viewer_page.py"},
     "matplotlib": {"pcg/learning_curve.py"},
@@ -51,6 +52,8 @@ HOMES = {
 """The only modules that import a library."""
 
 EVERYWHERE = {"numpy", "pydantic"}
+CLUSTER = {"distributed"}
+"""Of the extra `cluster`."""
 LEARNING = {"onnx", "stable_baselines3", "torch"}
 """Of the extra `rl`."""
 
@@ -101,9 +104,10 @@ def test_every_library_is_declared():
     """What is imported is what is installed, nothing less and nothing more."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     declared = {requirement.split(">=")[0] for requirement in project["dependencies"]}
-    assert declared == {DISTRIBUTIONS.get(name, name) for name in (HOMES.keys() | EVERYWHERE) - LEARNING}
-    extra = {requirement.split(">=")[0] for requirement in project["optional-dependencies"]["rl"]}
-    assert extra >= {DISTRIBUTIONS.get(name, name) for name in LEARNING}
+    assert declared == {DISTRIBUTIONS.get(name, name) for name in (HOMES.keys() | EVERYWHERE) - LEARNING - CLUSTER}
+    for extra, libraries_of_it in {"cluster": CLUSTER, "rl": LEARNING}.items():
+        optional = {requirement.split(">=")[0] for requirement in project["optional-dependencies"][extra]}
+        assert optional >= {DISTRIBUTIONS.get(name, name) for name in libraries_of_it}
 
 
 @pytest.mark.parametrize(

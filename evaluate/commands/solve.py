@@ -3,14 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from converter.plan import write_plan
 from converter.scene import Scene
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.names import safe_name
 from evaluate.output import log, print_json, print_line, print_table, progress
+from evaluate.setting_values import assignments, changed
 from evaluate.trial import TrialOutcome, require_plannable, run_trial, warm_up
-from planner import Settings
+from planner import Settings, settings_for
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,23 @@ def solve_to_file(scene: Scene, settings: Settings, seed: int, folder: Path) -> 
         pick_places=plan.pick_places if plan.solved else None,
         certificate=plan.certificate,
     )
+
+
+def settings_of(preset: str, changes: Sequence[str], demonstrations: Path | None, **options: Any) -> Settings:
+    """The settings that the options of the command stand for.
+
+    Args:
+        preset: Name of a preset of settings.
+        changes: Texts like `candidates=50`; they come last.
+        demonstrations: Folder of demonstrations; None for those that come with the product.
+        options: Settings with an option of their own.
+
+    Raises:
+        InputError: a setting does not exist, or a value is not allowed.
+    """
+    if demonstrations is not None:
+        options["demonstrations"] = str(demonstrations)
+    return changed(settings_for(preset, **options), assignments(changes, "--set"), "--set")
 
 
 def run(

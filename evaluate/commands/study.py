@@ -10,22 +10,25 @@ from evaluate.specification import read_study
 from evaluate.store import TrialRow, TrialStore
 from evaluate.study import StudySummary, run_study, study_table
 from evaluate.tables import Cell, by_method
-from evaluate.workers import WorkerStartError, run_tasks
+from evaluate.workers import Execute, WorkerStartError, run_tasks
 from pcg.errors import InputError
 from pcg.files import write_text
 
 TABLE_FILE = "table.md"
 
 
-def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
+def run(
+    spec: Path, out: Path, *, workers: int, cluster: str | None, demonstrations: Path | None, as_json: bool
+) -> bool:
     """Runs the command; see `evaluate.cli.study`."""
-    study = read_study(spec)
+    study = read_study(spec, demonstrations)
+    execute = _execution(workers, cluster, out)
     for note in study.notes:
         log(note)
     with TrialStore(out) as store, progress("rate", "solved") as bar:
         display = _Display(bar, study.name, study.size)
         try:
-            summary = run_study(study, store, partial(run_tasks, workers=workers), on_trial=display.on_trial)
+            summary = run_study(study, store, execute, on_trial=display.on_trial)
         except KeyboardInterrupt:
             log(f"interrupted: the finished trials are in {out}, the same command continues")
             raise
@@ -44,6 +47,17 @@ def run(spec: Path, out: Path, workers: int, *, as_json: bool) -> bool:
             f"table in {out / TABLE_FILE}"
         )
     return True
+
+
+def _execution(workers: int, cluster: str | None, out: Path) -> Execute:
+    if cluster is None:
+        return partial(run_tasks, workers=workers)
+    try:
+        # Dask takes a second to import, and need not be installed.
+        from evaluate.cluster import run_on_cluster  # noqa: PLC0415  # see above
+    except ImportError as error:
+        raise InputError("--cluster", f"needs Dask: pip install 'manipuzzle[cluster]' ({error})") from None
+    return partial(run_on_cluster, address=cluster, name=str(out.resolve()))
 
 
 class _Display:
