@@ -1,15 +1,87 @@
-"""Levels by trained policies."""
+"""Levels by policies, trained or not."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
 
 from pcg.agents import Agent, policy_path
-from pcg.errors import InputError
-from pcg.request import LevelSource
+from pcg.examine import examined
+from pcg.level import Level
+from pcg.observation import Float32Array
+from pcg.policy import Policy, load_policy, policy_levels
+from pcg.representation import IntArray
+from pcg.request import Proposal, Rejection, Request
+from pcg.solver import Solution
 
 
-def source_of(agent: Agent) -> LevelSource:
+@dataclass(frozen=True)
+class PolicySource:
+    """Runs a policy; an attempt is an episode.
+
+    Levels are taken as the policy left them, without any repair, and tested by `examined`: the policy's own account of
+    what it met does not count.
+    """
+
+    policy: Policy
+
+    @property
+    def representation(self) -> str:
+        """How the policy edits levels."""
+        return self.policy.representation
+
+    @property
+    def weights_hash(self) -> str | None:
+        """Of the policy's file."""
+        return self.policy.weights_hash
+
+    def proposals(self, request: Request, seed: int) -> Iterator[Proposal]:
+        """One proposal an episode; see `LevelSource`.
+
+        Raises:
+            InputError: the policy cannot make levels of this kind.
+        """
+        targets = _targets(request)
+        for attempt in policy_levels(self.policy, request, np.random.default_rng(np.random.SeedSequence(seed))):
+            outcome = attempt.rejection if attempt.level is None else _tested(attempt.level, request)
+            if isinstance(outcome, tuple):
+                yield Proposal(*outcome, 1, {}, attempt.steps, targets)
+            else:
+                reason = outcome or Rejection.UNFINISHED
+                yield Proposal(None, None, 1, {reason.value: 1}, attempt.steps, targets)
+
+
+@dataclass(frozen=True)
+class UntrainedPolicy(Policy):
+    """A policy that takes all actions alike, as networks do before their first update."""
+
+    def sample(self, observed: Float32Array, rng: np.random.Generator) -> IntArray:
+        """(n,) actions; see `Policy.sample`."""
+        (logits,) = self.session.get_outputs()
+        return rng.integers(logits.shape[1], size=len(observed))
+
+
+def source_of(agent: Agent) -> PolicySource:
     """The source of an agent's levels.
 
     Raises:
         InputError: its policy is missing or cannot be read.
     """
-    path = policy_path(agent.representation)
-    raise InputError(str(path), "no such policy")
+    return PolicySource(load_policy(policy_path(agent.representation)))
+
+
+def _tested(level: Level, request: Request) -> tuple[Level, Solution] | Rejection:
+    return examined(level, request)
+
+
+def _targets(request: Request) -> dict[str, float]:
+    """What is asked for, by name; open bands and wishes without preference are left out."""
+    asked = {
+        "min_wall_density": request.wall_density[0],
+        "max_wall_density": request.wall_density[1],
+        "min_pushes": request.pushes[0],
+        "max_pushes": request.pushes[1],
+        "occluded": request.occluded,
+        "dependency": request.dependency,
+    }
+    return {name: float(value) for name, value in asked.items() if value is not None}
