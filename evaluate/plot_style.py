@@ -23,6 +23,9 @@ DASHES: tuple[Literal["-", "--", "-.", ":"], ...] = ("-", "--", "-.", ":")
 
 FORMATS = ("svg", "pdf", "png")
 
+SCREEN_SCALE = 2.1
+"""Pixels of a page per point of paper."""
+
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 7,
@@ -88,7 +91,10 @@ def inline_svg(figure: Figure, prefix: str) -> str:
     """
     text = figure_bytes(figure, "svg").decode()
     text = text[text.index("<svg") :]
-    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", text, flags=re.DOTALL)
+    width = round(SCREEN_SCALE * 72 * figure.get_figwidth())
+    text = re.sub(r'^<svg ([^>]*?)width="[^"]*"', rf'<svg \1style="width: {width}px"', text)
+    text = re.sub(r'^(<svg [^>]*?) height="[^"]*"', r"\1", text)
     text = re.sub(r'\bid="', f'id="{prefix}-', text)
     return re.sub(r'(href="#|url\(#)', rf"\1{prefix}-", text)
 

@@ -24,6 +24,9 @@ MAX_BOXED_SCENES = 24
 """Scenes in the box plots; of more, those with the longest times are shown."""
 
 SCENES_A_ROW = 6
+MAX_GROUPS = 8
+"""Groups of scenes that fit beside each other."""
+
 CURVE_POINTS = 400
 """Steps of a curve; nobody sees more."""
 
@@ -50,7 +53,7 @@ def plots_of(frame: pl.DataFrame, groupings: Sequence[Grouping]) -> list[Plot]:
     plots = []
     if frame["solved"].any():
         plots += [times_plot(frame), curves_plot(frame)]
-    difficulty = [grouping for grouping in groupings if len(grouping.groups) > 1]
+    difficulty = [grouping for grouping in groupings if 1 < len(grouping.groups) <= MAX_GROUPS]
     return [*plots, success_plot(frame, difficulty)] if difficulty else plots
 
 
@@ -70,7 +73,7 @@ def times_plot(frame: pl.DataFrame) -> Plot:
         rows = math.ceil(len(scenes) / columns)
         width = TEXT_WIDTH if columns > 3 else COLUMN_WIDTH
         figure = Figure(figsize=(width, 1.35 * rows + 0.35), layout="constrained")
-        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        axes = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
         for i, (ax, scene) in enumerate(zip(axes, scenes, strict=False)):
             _boxes(ax, solved.filter(pl.col("scene") == scene), methods)
             ax.set_title(_plain(scene), fontsize=7)
@@ -97,7 +100,8 @@ def curves_plot(frame: pl.DataFrame) -> Plot:
         for i, (method, matrix) in enumerate(times.items()):
             seconds, shares = _thinned(*solved_within(matrix))
             if len(seconds):
-                x, y = np.append(seconds, longest), np.append(shares, shares[-1])
+                x = np.concatenate([seconds[:1], seconds, [longest]])
+                y = np.concatenate([[0.0], shares, shares[-1:]])
                 ax.step(x, y, where="post", color=color_of(i), linestyle=dashes_of(i), label=_plain(method))
         ax.set_xscale("log")
         ax.set_xlabel("time [s]")
@@ -153,21 +157,25 @@ def _boxes(ax: Axes, runs: pl.DataFrame, methods: Sequence[str]) -> None:
 
 def _success(ax: Axes, frame: pl.DataFrame, grouping: Grouping, methods: Sequence[str]) -> None:
     width = 0.8 / len(methods)
-    for place, members in enumerate(grouping.groups.values()):
-        counts = success_counts(frame, members)
-        for i, method in enumerate(methods):
-            if method not in counts:
-                continue
-            solved, n = counts[method]
-            low, high = wilson_interval(solved, n)
-            x, rate = place + (i + 0.5) * width - 0.4, solved / n
-            ax.bar(x, rate, width, color=color_of(i), alpha=0.85)
-            ax.plot([x, x], [low, high], color="#333333", linewidth=0.7)
+    for i, method in enumerate(methods):
+        found = [
+            (place + (i + 0.5) * width - 0.4, *counts[method])
+            for place, members in enumerate(grouping.groups.values())
+            if method in (counts := success_counts(frame, members))
+        ]
+        if not found:
+            continue
+        x, solved, trials = (np.array(values, dtype=float) for values in zip(*found, strict=True))
+        limits = np.array([wilson_interval(int(s), int(n)) for s, n in zip(solved, trials, strict=True)]).T
+        rates = solved / trials
+        errors = np.abs(limits - rates)
+        ax.errorbar(x, rates, errors, color=color_of(i), linestyle="none", marker="o", markersize=3, elinewidth=0.8)
     names = [f"{_plain(name)}\n({len(members)})" for name, members in grouping.groups.items()]
     ax.set_xticks(range(len(names)), names)
     ax.tick_params(axis="x", length=0)
     ax.set_title(grouping.title, fontsize=7)
-    ax.set_ylim(0, 1.02)
+    ax.set_xlim(-0.5, len(names) - 0.5)
+    ax.set_ylim(-0.02, 1.02)
     ax.yaxis.set_major_formatter(PercentFormatter(1.0))
     ax.grid(visible=True, axis="y")
 

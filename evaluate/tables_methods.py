@@ -57,7 +57,7 @@ def methods_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table:
             (
                 Entry(method),
                 Entry(f"{total['n_solved']}/{total['len']}", value=rate),
-                Entry(f"{percent(rate)} ({percent(low)} to {percent(high)})", value=rate),
+                Entry(f"{percent(rate)} ({100 * low:.0f} to {100 * high:.0f})", value=rate),
                 Entry(f"{total['n_accepted']}", value=total["n_accepted"]) if total["n_asked"] else BLANK,
                 _interval_entry(matrix, mean_time, rng),
                 _interval_entry(matrix, median_time, rng),

@@ -48,7 +48,7 @@ def success_table(
                 row.append(BLANK if share is None else Entry(percent(share), value=share))
         rows.append(tuple(row))
     heads = [head for method in methods for head in ([method, f"{method} {PAPER}"] if method in known else [method])]
-    note = "Share of the runs that end with a verified plan, solved / all, and the 95 % Wilson interval."
+    note = "Share of the runs that end with a verified plan, its 95 % Wilson interval [%], and the runs solved of all."
     title = f"Success by {grouping.title}"
     return Table(f"success-{grouping.name}", title, note, ("scenes", "number", *heads), tuple(rows))
 
@@ -58,4 +58,4 @@ def _entry(count: tuple[int, int] | None) -> Entry:
         return BLANK
     solved, n = count
     low, high = wilson_interval(solved, n)
-    return Entry(f"{percent(solved / n)} {solved}/{n} ({percent(low)} to {percent(high)})", value=solved / n)
+    return Entry(f"{percent(solved / n)} ({100 * low:.0f} to {100 * high:.0f}) {solved}/{n}", value=solved / n)
