@@ -504,6 +504,71 @@ def report(
     _exit(run(folder, out, format_ or [], published, as_json=json))
 
 
+@app.command(short_help="List the trials of a study; write and verify their plans.")
+def trials(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Results of a study.")],
+    *,
+    trial: Annotated[
+        str | None, typer.Option(metavar="KEY", help="Beginning of a trial's key.", show_default=False)
+    ] = None,
+    scene: Annotated[str | None, typer.Option(metavar="NAME", help="Of this scene only.", show_default=False)] = None,
+    method: Annotated[str | None, typer.Option(metavar="NAME", help="Of this method only.", show_default=False)] = None,
+    seed: Annotated[
+        int | None, typer.Option(metavar="N", min=0, help="With this seed only.", show_default=False)
+    ] = None,
+    status: Annotated[
+        str | None, typer.Option(metavar="NAME", help="That ended so: solved, timeout, ...", show_default=False)
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write the plans into this folder.", show_default=False)
+    ] = None,
+    verify: Annotated[bool, typer.Option("--verify", help="Verify the plans anew.")] = False,
+    json: Json = False,
+) -> None:
+    """List the trials of a study; with --out write their plans, which verify and render read, scene included.
+
+    Exit status 1 if --verify finds a plan that is not valid.
+
+    Example:  manipuzzle trials out/study --scene corner --seed 0 --out out/plans
+    """
+    from evaluate.commands.trials import Choice, run
+
+    choice = Choice(key=trial, scene=scene, method=method, seed=seed, status=status)
+    _exit(run(folder, choice, out, verified=verify, as_json=json))
+
+
+@app.command(short_help="Merge the results of several studies.")
+def merge(
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR", help="Results of studies.")],
+    *,
+    out: Out,
+    json: Json = False,
+) -> None:
+    """Merge the results of several studies, run on several machines for example, into one folder.
+
+    Example:  manipuzzle merge out/study out/more --out out/all
+    """
+    from evaluate.commands.merge import run
+
+    _exit(run(folders, out, as_json=json))
+
+
+@app.command(short_help="Compare the results of two studies.")
+def diff(
+    first: Annotated[Path, typer.Argument(metavar="DIR", help="Results of a study.")],
+    second: Annotated[Path, typer.Argument(metavar="DIR", help="Results of another one.")],
+    *,
+    json: Json = False,
+) -> None:
+    """Compare two results trial by trial: same scene, method and seed. Exit status 1 if one solves what the other not.
+
+    Example:  manipuzzle diff out/study out/more
+    """
+    from evaluate.commands.diff import run
+
+    _exit(run(first, second, as_json=json))
+
+
 @app.command(short_help="Time the parts, with peers beside them.")
 def bench(
     *,

@@ -105,7 +105,8 @@ class StudyRecord:
         scenes: Name and `Scene.geometry_hash` of each scene, in order. A name may occur once per geometry preset.
         methods: Name and `Method.hash` of each method, in order.
         seeds: The seeds.
-        trials: Number of trials; less than the product of the three where a method does not suit a scene.
+        trials: Number of trials; less than the product of the three where a method does not suit a scene. Of merged
+            folders it is the number of trials that they hold.
     """
 
     name: str
@@ -171,6 +172,16 @@ class StoredTrials:
         """
         columns = ", ".join(name if plans or name != "plan" else "NULL" for name in _COLUMNS)
         yield from self._selected(f"SELECT {columns} FROM trial ORDER BY rowid")  # noqa: S608  # our own column names
+
+    def get(self, key: str) -> TrialRow:
+        """The row of a trial.
+
+        Raises:
+            KeyError: there is none.
+        """
+        for row in self._selected(f"SELECT {', '.join(_COLUMNS)} FROM trial WHERE key = ?", key):  # noqa: S608  # our own text
+            return row
+        raise KeyError(key)
 
     def find(self, key: str) -> list[TrialRow]:
         """The rows whose key begins with `key`."""

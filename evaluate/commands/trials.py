@@ -1,0 +1,101 @@
+"""`manipuzzle trials`: the trials of a results folder, their plans as files, and their plans verified anew."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from converter.plan import write_plan
+from evaluate.inputs import require_writable
+from evaluate.names import safe_name
+from evaluate.output import log, print_json, print_line, print_table
+from evaluate.record import plan_of
+from evaluate.store import StoredTrials, TrialRow
+from pcg.errors import InputError
+from planner.verify import verify
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Which trials; None chooses all.
+
+    Attributes:
+        key: Beginning of their keys.
+        scene: Name of their scene.
+        method: Name of their method.
+        seed: Their seed.
+        status: How they ended.
+    """
+
+    key: str | None = None
+    scene: str | None = None
+    method: str | None = None
+    seed: int | None = None
+    status: str | None = None
+
+    def includes(self, row: TrialRow) -> bool:
+        """Whether a trial is among them."""
+        wanted = (self.scene, self.method, self.seed, self.status)
+        found = (row.scene, row.method, row.seed, row.status)
+        fits = all(want is None or want == has for want, has in zip(wanted, found, strict=True))
+        return fits and row.key.startswith(self.key or "")
+
+
+def run(folder: Path, choice: Choice, out: Path | None, *, verified: bool, as_json: bool) -> bool:
+    """Runs the command; see `evaluate.cli.trials`."""
+    with StoredTrials(folder) as store:
+        if out is not None:
+            require_writable(out)
+        found = [_reported(row, out, verified=verified) for row in _chosen(store, choice)]
+    if not found:
+        raise InputError(str(folder), "holds no such trial")
+    if as_json:
+        print_json({"trials": found})
+    else:
+        columns = ["trial", "scene", "preset", "method", "seed", "status", "time [s]", "verified", "message", "plan"]
+        print_table(columns, ([trial[_FIELDS[column]] for column in columns] for trial in found))
+        print_line(f"{len(found)} trials, {sum(trial['verified'] is True for trial in found)} solved")
+    return not any(trial["verified"] is False for trial in found) if verified else True
+
+
+_FIELDS = {"time [s]": "time_s"} | {
+    name: name for name in ("trial", "scene", "preset", "method", "seed", "status", "verified", "message", "plan")
+}
+
+
+def _chosen(store: StoredTrials, choice: Choice) -> Iterator[TrialRow]:
+    rows = store.rows() if choice.key is None else iter(store.find(choice.key))
+    return (row for row in rows if choice.includes(row))
+
+
+def _reported(row: TrialRow, out: Path | None, *, verified: bool) -> dict[str, Any]:
+    """What is printed about a trial; its plan is written and verified as wanted."""
+    file, valid, message = None, row.verified, row.message
+    if row.plan is not None and (out is not None or verified):
+        plan = plan_of(row)
+        assert plan is not None  # noqa: S101  # the row has one
+        if verified and plan.scene_data is not None:
+            violations = verify(plan.scene_data, plan)
+            valid, message = not violations, violations[0].message if violations else None
+            if valid != row.verified:
+                log(f"{row.key}: the verdict was {row.verified}, now it is {valid}")
+        if out is not None:
+            file = out / f"{_name(row)}.json"
+            write_plan(file, plan)
+    return {
+        "trial": row.key,
+        "scene": row.scene,
+        "preset": row.preset,
+        "method": row.method,
+        "seed": row.seed,
+        "status": row.status,
+        "time_s": row.time_s,
+        "verified": valid,
+        "message": message,
+        "plan": None if file is None else str(file),
+    }
+
+
+def _name(row: TrialRow) -> str:
+    """Name of a plan's file: the trial's key tells equal names in two geometries apart."""
+    return "-".join([safe_name(row.scene), safe_name(row.method), str(row.seed), row.key[:6]])
