@@ -16,13 +16,17 @@ FPS_RANGE = (1, 50)
 """Frames a second that viewers of GIF files play as they are told."""
 
 
+PNG_COMPRESSION = 6
+"""Files are hardly larger than with 9, and written in half the time."""
+
+
 def write_png(path: Path, image: Image) -> None:
     """Writes an image; equal images give equal bytes.
 
     Raises:
         InputError: the file cannot be written.
     """
-    _, encoded = cv2.imencode(".png", image[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
+    _, encoded = cv2.imencode(".png", image[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, PNG_COMPRESSION])
     with replacing(path) as temporary:
         temporary.write_bytes(encoded.tobytes())
 

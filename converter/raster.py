@@ -75,6 +75,9 @@ def _paint_shape(image: Image, drawing: Drawing, shape: Shape) -> None:
     for part in shape.parts:
         near = _window(image, drawing, extent((part,)), width)
         place = _place(near, window)
+        if width == 0 and part.radius == 0 and _is_upright_box(part.core):
+            inside[place] = np.minimum(inside[place] + _box_coverage(part.core, near, pixel), 1.0)
+            continue
         distance = _distance(part, near)
         # Parts that touch along an edge cover half of its pixels each: their sum leaves no seam. Their outlines
         # overlap there, and the larger one counts.
@@ -185,11 +188,13 @@ def _distance(part: Rounded, window: _Window) -> FloatArray:
     The distance to a convex polygon is the least over its edges, negative where the point lies left of them all; an
     inflated polygon's is that less the radius.
     """
-    x, y = window.x[None, :], window.y[:, None]
     core = part.core
     if len(core) == 1:
-        from_center: FloatArray = np.hypot(x - core[0, 0], y - core[0, 1])
+        from_center: FloatArray = np.hypot(window.x[None, :] - core[0, 0], window.y[:, None] - core[0, 1])
         return from_center - part.radius
+    if _is_upright_box(core):
+        return _distance_to_box(core, window) - part.radius
+    x, y = window.x[None, :], window.y[:, None]
     squared = np.full((len(window.y), len(window.x)), np.inf)
     inside = np.full(squared.shape, fill_value=len(core) > 2)
     edges = np.roll(core, -1, axis=0) - core
@@ -202,20 +207,53 @@ def _distance(part: Rounded, window: _Window) -> FloatArray:
     return from_core - part.radius
 
 
+def _is_upright_box(core: FloatArray) -> bool:
+    """Whether `core` has four corners and sides along the axes, which most walls and objects have."""
+    sides = np.diff(core, axis=0)
+    return len(core) == 4 and bool((np.count_nonzero(sides, axis=1) == 1).all()) and bool((core[0] != core[2]).all())
+
+
+def _distance_to_box(core: FloatArray, window: _Window) -> FloatArray:
+    """As `_distance` of the core alone: how far beyond its sides a point is, or how far within the nearest one."""
+    lower, upper = core.min(axis=0), core.max(axis=0)
+    x = np.maximum(lower[0] - window.x, window.x - upper[0])[None, :]
+    y = np.maximum(lower[1] - window.y, window.y - upper[1])[:, None]
+    outside = np.hypot(np.maximum(x, 0.0), np.maximum(y, 0.0))
+    within: FloatArray = np.minimum(np.maximum(x, y), 0.0)
+    return outside + within
+
+
 def _coverage(distance: FloatArray, pixel: float) -> FloatArray:
     """Share of each pixel that a shape at signed `distance` [m] covers."""
     share: FloatArray = np.clip(0.5 - distance / pixel, 0.0, 1.0)
     return share
 
 
+def _box_coverage(core: FloatArray, window: _Window, pixel: float) -> FloatArray:
+    """Share of each pixel that an upright box covers: the product of those of its column and of its row."""
+    lower, upper = core.min(axis=0), core.max(axis=0)
+    shares = []
+    for axis, centers in enumerate((window.x, window.y)):
+        ends = np.minimum(centers + pixel / 2, upper[axis]) - np.maximum(centers - pixel / 2, lower[axis])
+        shares.append(np.clip(ends / pixel, 0.0, 1.0))
+    covered: FloatArray = np.outer(shares[1], shares[0])
+    return covered
+
+
 def _blend(pixels: Image, layers: list[tuple[Color, FloatArray]]) -> None:
     """Mixes colours into `pixels` (h, w, 3), each with its (h, w) weights; the weights add up to at most 1."""
-    ground = 1.0 - np.sum([weights for _, weights in layers], axis=0)
-    for channel in range(3):
-        mixed = pixels[..., channel] * ground
-        for color, weights in layers:
-            mixed += weights * _bytes(color)[channel]
-        pixels[..., channel] = np.rint(mixed)
+    mixed = np.zeros(pixels.shape[:2], dtype=np.bool_)
+    for color, weights in layers:
+        mixed |= weights > 0
+        # Most pixels lie inside of a shape: they take its colour as it is.
+        full = weights >= 1
+        pixels[full] = _bytes(color)
+        mixed &= ~full
+    rows, columns = np.nonzero(mixed)
+    values = pixels[rows, columns] * (1.0 - sum(weights[rows, columns] for _, weights in layers))[:, np.newaxis]
+    for color, weights in layers:
+        values += weights[rows, columns][:, np.newaxis] * _bytes(color)
+    pixels[rows, columns] = np.rint(values)
 
 
 def _bytes(color: Color) -> npt.NDArray[np.uint8]:

@@ -22,7 +22,7 @@ HOMES = {
         "planner/lgp_solver.py",
         "planner/nlp.py",
     },
-    "cv2": {"converter/raster.py", "converter/image_file.py"},
+    "cv2": {"converter/h264.py", "converter/image_file.py", "converter/raster.py"},
     "distributed": {"evaluate/cluster.py"},
     "gymnasium": {"pcg/train.py"},
     "jinja2": {"converter/viewer_page.py"},
