@@ -2,6 +2,7 @@
 
 import heapq
 from collections import Counter, defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import count
 
@@ -39,6 +40,13 @@ class Node:
             steps.append(node.step)
             node = node.parent
         return steps[::-1]
+
+    def followed_by(self, steps: Sequence[PickPlace]) -> "Node":
+        """The last of the new nodes to which `steps` lead from here; this one if there are none."""
+        node = self
+        for step in steps:
+            node = Node(step.applied_to(node.configuration), node, step)
+        return node
 
     @property
     def pick_places(self) -> int:

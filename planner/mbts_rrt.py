@@ -47,7 +47,7 @@ def motions_between(
     for k, action in enumerate(skeleton):
         arrived = after(configuration, skeleton, switches, k)
         if action.is_pick:
-            valid = _touches(problem, arrived, action.index)
+            valid = touches(problem, arrived, action.index)
             space = problem.agent_space(configuration)
         else:
             valid = action.surface is not Surface.GOAL or problem.scene.goal.contains(arrived.objects[action.index])
@@ -66,7 +66,7 @@ def motions_between(
     return motions
 
 
-def _touches(problem: Problem, configuration: Configuration, index: int) -> bool:
+def touches(problem: Problem, configuration: Configuration, index: int) -> bool:
     """Whether agent and object are no further apart than the tolerance; whether they overlap is a matter of motion."""
     body, scene = problem.scene.objects[index], problem.scene
     reach = [scene.agent.radius + part.edge_radius + scene.tolerance + 2 * TOUCH_GAP for part in body.parts]

@@ -21,6 +21,7 @@ from converter.shape import FloatArray
 from planner.assemble import segments_of, subgoals_of
 from planner.frontier import Frontier, Node, Rejection
 from planner.heuristics import Heuristic, score, scores_by, scores_if
+from planner.original_problem import original_solver
 from planner.pick_place import PickPlace, PickPlaceSolver, Region
 from planner.problem import Configuration, Problem
 from planner.result import PlanResult, Progress
@@ -101,6 +102,7 @@ class Search:
         self._score = heuristic or score
         self._scores_of = scores_if if heuristic is None else scores_by(heuristic)
         self._solver_for = subproblem_solvers(problem, settings, rng, self.counters, self._out_of_budget)
+        self._solve = original_solver(problem, settings, rng, self.counters, self._out_of_budget)
         self._started = time.perf_counter()
         self._should_stop = should_stop
         self._on_progress = on_progress
@@ -119,9 +121,8 @@ class Search:
                 return self._result(Status.SOLVED, node.steps())
             self.counters["expansions"] += 1
             subproblems = self._solver_for(node.configuration)
-            final = subproblems.pick_place(problem.goal_index, Region.of_goal(problem.scene.goal))
-            if final is not None:
-                self.solution = Node(final.applied_to(node.configuration), node, final)
+            if steps := self._solve(node.configuration, subproblems):
+                self.solution = node.followed_by(steps)
                 return self._result(Status.SOLVED, self.solution.steps())
             for index in range(problem.n_objects):
                 if not subproblems.reachable(index):

@@ -16,6 +16,16 @@ rejection. Of multi-bound tree search: trajectories by optimisation as published
 solution of the level that the scene was converted from.
 """
 
+SOLVE_BY = ("pick-place", "MBTS", "MBTS-rrt")
+"""Ways to attempt the original problem within the forward search."""
+
+_CHOICES = {
+    "method": METHODS,
+    "preset": ("fast", "faithful"),
+    "motion": MOTION_PLANNERS,
+    "solve_by": SOLVE_BY,
+}
+
 _COUNTS = (
     "candidates",
     "subgoals_per_object",
@@ -49,7 +59,10 @@ class Settings(MbtsSettings):
             published scene files are 0.1 m tables in the puzzles and 0.2 m tables in the generated scenes.
         grasp_starts: Starts on the contact curve for one switch-configuration problem.
         placement_samples: Placements tried in a region, its centre first.
-        motion: Motion planner of the faithful preset and of MBTS-rrt, one of `planner.motion.MOTION_PLANNERS`.
+        solve_by: How the original problem is attempted from a configuration, one of `SOLVE_BY`; see
+            `planner.original_problem`.
+        motion: Motion planner of the faithful preset and of MBTS-rrt, one of `planner.motion.MOTION_PLANNERS`: by
+            default the compiled RRT-Connect, the same algorithm as OMPL's and a hundred times faster.
         reach_iterations: Iterations of RRT-Connect for the question whether an object can be reached.
         motion_iterations: Iterations of RRT-Connect for a motion between switch configurations.
         motion_attempts: Switch configurations of one subproblem for which motions are sought.
@@ -77,7 +90,8 @@ class Settings(MbtsSettings):
     subgoal_size: float = 0.1
     grasp_starts: int = 12
     placement_samples: int = 8
-    motion: str = "ompl"
+    solve_by: str = "pick-place"
+    motion: str = "rrt"
     reach_iterations: int = 20_000
     motion_iterations: int = 20_000
     motion_attempts: int = 2
@@ -93,12 +107,9 @@ class Settings(MbtsSettings):
     demonstrations: str | None = None
 
     def __post_init__(self) -> None:
-        if self.method not in METHODS:
-            raise InputError("method", f"found {self.method!r}, allowed are {', '.join(METHODS)}")
-        if self.motion not in MOTION_PLANNERS:
-            raise InputError("motion", f"found {self.motion!r}, allowed are {', '.join(MOTION_PLANNERS)}")
-        if self.preset not in ("fast", "faithful"):
-            raise InputError("settings", f"found {self.preset!r}, allowed are fast, faithful")
+        for name, allowed in _CHOICES.items():
+            if (found := getattr(self, name)) not in allowed:
+                raise InputError(name, f"found {found!r}, allowed are {', '.join(allowed)}")
         if not 0 < self.time_limit < math.inf:
             raise InputError("time limit", f"found {self.time_limit}, must be a finite number of seconds > 0")
         if not 0 <= self.improve < math.inf:

@@ -127,7 +127,7 @@ def test_the_search_can_be_stopped():
 def test_a_motion_cut_short_does_not_exhaust_the_search():
     """Stopped in the middle of the last path bound, the search ran out of time, not out of skeletons."""
     asked = count()
-    settings = replace(MBTS_RRT, mbts_max_depth=2)
+    settings = replace(MBTS_RRT, mbts_max_depth=2, motion="ompl")
     result = solve(ACROSS, settings, np.random.default_rng(0), should_stop=lambda: next(asked) > 200)
     assert result.counters["path_infeasible"] == 1
     assert result.status is Status.TIMEOUT

@@ -42,8 +42,8 @@ def test_time_limits_are_positive(seconds: float):
 
 
 def test_unknown_motion_planners_are_refused():
-    """The message names what was found and what is allowed; by default OMPL plans motions, as published."""
-    assert {settings.motion for settings in PRESETS.values()} == {"ompl"}
+    """The message names what was found and what is allowed; by default RRT-Connect plans motions, as published."""
+    assert {settings.motion for settings in PRESETS.values()} == {"rrt"}
     with pytest.raises(InputError, match=r"motion: found 'ompl:PRM', allowed are ompl, rrt, visibility, ompl:RRT"):
         Settings(motion="ompl:PRM")
 
@@ -83,7 +83,7 @@ def test_the_document_holds_every_field():
 @pytest.mark.parametrize(
     ("changes", "problem"),
     [
-        ({"preset": "slow"}, "settings: found 'slow', allowed are fast, faithful"),
+        ({"preset": "slow"}, "preset: found 'slow', allowed are fast, faithful"),
         ({"time_limit": float("inf")}, "time limit: found inf, must be a finite number"),
         ({"candidates": 0}, "candidates: found 0, must be at least 1"),
         ({"keep_share": 1.5}, "keep_share: found 1.5, must be > 0 and at most 1"),
