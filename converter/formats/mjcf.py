@@ -91,7 +91,11 @@ def mjcf_text(scene: Scene, movable: Movable = Movable.FREE) -> str:
     root = ET.Element("mujoco", model=model_name)
     root.append(ET.Comment(f" manipuzzle scene {scene.geometry_hash}; metres, radians "))
     _add(root, "compiler", angle="radian", autolimits="true")
-    _add(root, "option", timestep=_number(TIME_STEP), integrator="implicitfast", cone="elliptic", impratio="10")
+    option = _add(
+        root, "option", timestep=_number(TIME_STEP), integrator="implicitfast", cone="elliptic", impratio="10"
+    )
+    # With several contact points a pair, MuJoCo 4.0 reports cylinders up to half a millimetre too deep.
+    _add(option, "flag", multiccd="disable")
     _add_defaults(root)
     meshes = _Meshes(_add(root, "asset"))
     world = _add(root, "worldbody")
@@ -112,15 +116,11 @@ def mjcf_text(scene: Scene, movable: Movable = Movable.FREE) -> str:
 
 def _add_defaults(root: ET.Element) -> None:
     default = _add(root, "default")
-    # Stiffer contacts than MuJoCo's default, which sink in by millimetres under the loads that occur here.
-    _add(default, "geom", solref="0.004 1", solimp="0.95 0.99 0.0001")
     _add(_add(default, "default", {"class": "wall"}), "geom", density="1000")
     _add(_add(default, "default", {"class": "object"}), "geom", density=_number(OBJECT_DENSITY))
     agent = _add(default, "default", {"class": AGENT})
     _add(agent, "geom", type="cylinder", mass=_number(AGENT_MASS), condim="1", priority="1")
     _add(agent, "joint", type="slide")
-    _add(agent, "position", kp=_number(AGENT_MASS * SERVO_FREQUENCY**2))
-    _add(agent, "velocity", kv=_number(2 * AGENT_MASS * SERVO_FREQUENCY))
 
 
 def _add_room(world: ET.Element, scene: Scene) -> None:
@@ -169,19 +169,19 @@ class _Meshes:
     """The mesh assets of a model: one for all parts of the same shape."""
 
     asset: ET.Element
-    names: dict[str, str] = field(default_factory=dict)
+    names: dict[tuple[bytes, float, float], str] = field(default_factory=dict)
 
     def name_of(self, part: Part, height: float) -> str:
         """The name of the prism over a part, about the middle of its height."""
-        outline = outline_polygon(part)
-        levels = (np.column_stack([outline, np.full(len(outline), z)]) for z in (-height / 2, height / 2))
-        # MuJoCo keeps vertices in single precision: nanometres are more than it can tell apart.
-        vertices = _numbers(np.concatenate(list(levels)).ravel().round(9))
-        if vertices not in self.names:
-            name = f"prism_{len(self.names) + 1}"
-            ET.SubElement(self.asset, "mesh", name=name, vertex=vertices)
-            self.names[vertices] = name
-        return self.names[vertices]
+        shape = part.core.round(9).tobytes(), part.edge_radius, height
+        if shape not in self.names:
+            outline = outline_polygon(part)
+            levels = [np.column_stack([outline, np.full(len(outline), z)]) for z in (-height / 2, height / 2)]
+            self.names[shape] = f"prism_{len(self.names) + 1}"
+            # MuJoCo keeps vertices in single precision: nanometres are more than it can tell apart.
+            vertices = _numbers(np.concatenate(levels).ravel().round(9).tolist())
+            _add(self.asset, "mesh", name=self.names[shape], vertex=vertices)
+        return self.names[shape]
 
 
 def _add_agent(root: ET.Element, world: ET.Element, scene: Scene) -> None:
@@ -192,16 +192,16 @@ def _add_agent(root: ET.Element, world: ET.Element, scene: Scene) -> None:
     for axis, direction, limits in zip("xy", ("1 0 0", "0 1 0"), scene.bounds.T - agent.position[:, None], strict=True):
         _add(body, "joint", name=f"{AGENT}_{axis}", axis=direction, range=_numbers(denoised(limits)))
     actuator = _add(root, "actuator")
-    for kind in ("position", "velocity"):
+    stiffness, damping = AGENT_MASS * SERVO_FREQUENCY**2, 2 * AGENT_MASS * SERVO_FREQUENCY
+    for kind, gain in (("position", {"kp": _number(stiffness)}), ("velocity", {"kv": _number(damping)})):
         for axis in "xy":
-            of_agent = {"class": AGENT, "joint": f"{AGENT}_{axis}"}
-            _add(actuator, kind, of_agent, name=f"{AGENT}_{kind}_{axis}")
+            _add(actuator, kind, gain, name=f"{AGENT}_{kind}_{axis}", joint=f"{AGENT}_{axis}")
     _add(_add(root, "contact"), "exclude", name=f"{AGENT}_{FLOOR}", body1="world", body2=AGENT)
 
 
 def _add_grasps(root: ET.Element, objects: Sequence[str]) -> None:
     equality = _add(root, "equality")
-    stiff = {"solref": "0.002 1", "solimp": "0.99 0.999 0.0001"}
+    stiff = {"solref": "0.005 1", "solimp": "0.99 0.999 0.0001"}
     for name in objects:
         _add(equality, "weld", stiff, name=GRASP_PREFIX + name, body1=AGENT, body2=name, active="false")
 
