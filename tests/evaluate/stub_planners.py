@@ -1,9 +1,11 @@
 """Stand-ins for the planner that worker processes can import: quick, and troublesome on demand."""
 
 import os
+import signal
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 from evaluate.record import failed_row
 from evaluate.store import TrialRow
@@ -11,7 +13,8 @@ from evaluate.trial import Trial
 from evaluate.workers import Failure, Job
 
 TIMES_OUT, CRASHES, RAISES, UNSOLVED = range(4)
-"""Seeds with which `troubled` gets into trouble."""
+HAS_ITS_PARENT_KILLED = 5
+"""Seeds with which there is trouble."""
 
 
 def job(run: Callable[[Trial], TrialRow], seconds: float = 2.0) -> Job[Trial, TrialRow]:
@@ -35,6 +38,16 @@ def troubled(trial: Trial) -> TrialRow:
         raise RuntimeError("a bug\nof two lines")
     row = quick(trial)
     return replace(row, status="exhausted", verified=None) if trial.seed == UNSOLVED else row
+
+
+def troubled_once(folder: str, trial: Trial) -> TrialRow:
+    """As `troubled`, but first seed 5 has its parent killed: on a cluster that is the Dask worker."""
+    killed = Path(folder, "killed")
+    if trial.seed == HAS_ITS_PARENT_KILLED and not killed.exists():
+        killed.touch()
+        os.kill(os.getppid(), signal.SIGKILL)
+        time.sleep(600)
+    return troubled(trial)
 
 
 def forbidden(trial: Trial) -> TrialRow:
