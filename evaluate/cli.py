@@ -287,14 +287,49 @@ def convert(
 
 
 @app.command(short_help="Check scenes in a 2D physics preview.")
-def check(scenes: Scenes, *, preset: Preset = None, tolerance: Tolerance = None, json: Json = False) -> None:
-    """Drive through scenes in a 2D physics preview and list their problems. Exit status 1 if one is not valid.
+def check(
+    scenes: Scenes,
+    *,
+    plan: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="PLAN", help="Play a plan of one of the scenes back; repeat for more.", show_default=False
+        ),
+    ] = None,
+    push: Annotated[
+        float | None,
+        typer.Option(
+            metavar="METRES",
+            min=0,
+            max=1e4,
+            help="Also drive this far against every object, from four sides.",
+            show_default=False,
+        ),
+    ] = None,
+    static: Annotated[bool, typer.Option("--static", help="Only check the scenes at rest.")] = False,
+    picture: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Draw what was found to DIR/{scene}.png.", show_default=False)
+    ] = None,
+    preset: Preset = None,
+    tolerance: Tolerance = None,
+    workers: Workers = 1,
+    json: Json = False,
+) -> None:
+    """Check scenes in a 2D physics preview: at rest, driving to every object and into the goal, playing plans back.
 
-    Example:  manipuzzle check out/scenes/*.yaml
+    At rest nothing may overlap or move. A disc that is told how fast to go then follows the exact planner's shortest
+    way to each object and into the goal; contacts and what it pushes are reported. In a plan that is played back nothing
+    but the carried object may move by more than a millimetre.
+
+    Exit status 1 if a scene is not valid, the disc does not arrive at the end of its way, or a plan does not play back.
+    That no way leads to an object is reported but no flaw, for others may have to be carried away first.
+
+    Example:  manipuzzle check out/scenes/*.yaml --picture out/checks --workers 2
     """
-    from evaluate.commands.check import run
+    from evaluate.commands.check import Request, run
 
-    _exit(run(scenes, preset=preset, tolerance=tolerance, as_json=json))
+    request = Request(static=static, push=push, picture=picture)
+    _exit(run(scenes, plan or [], request, preset=preset, tolerance=tolerance, workers=workers, as_json=json))
 
 
 @app.command(short_help="Plan, and verify the plans.")

@@ -19,7 +19,7 @@ import numpy as np
 from pydantic import BaseModel, Field
 
 from converter.plan import Status
-from converter.scene import NUMERIC_SLACK, Scene
+from converter.scene import NUMERIC_SLACK, Agent, Body, Scene
 from converter.shape import FloatArray
 from pcg.errors import InputError
 from pcg.grid import DIRECTIONS, Cell
@@ -184,7 +184,7 @@ class _Lift:
     def _straight(self, index: int, by: FloatArray) -> PickPlace | None:
         """The carry of object `index` by the vector `by` (2,) [m] with the agent behind it."""
         problem, configuration = self._problem, self._configuration
-        grasp = self._behind(index, by / np.hypot(*by))
+        grasp = touching_point(problem.scene.agent, problem.scene.objects[index], by / np.hypot(*by))
         start = configuration.objects[index] + grasp
         if not problem.carry_space(configuration, index, grasp).path_free(np.array([start, start + by])):
             return None
@@ -193,29 +193,29 @@ class _Lift:
             return None
         return PickPlace(index, approach, np.array([start, start + by]), configuration.objects[index] + by)
 
-    def _behind(self, index: int, direction: FloatArray) -> FloatArray:
-        """The agent centre (2,) [m], relative to object `index`, at which it touches the object from behind.
 
-        That is where the ray from the object's centre leaves the places at which the agent overlaps it, found by
-        bisection; all of a convex object is before the tangent at its hindmost point.
-        """
-        agent, body = self._problem.scene.agent, self._problem.scene.objects[index]
-        overlap = agent_obstacles(agent, body, tolerance=0.0)
-        inside, outside = (
-            0.0,
-            agent.radius
-            + max(
-                float((core @ -direction).max()) + part.edge_radius
-                for core, part in zip(body.cores, body.parts, strict=True)
-            ),
-        )
-        while outside - inside > NUMERIC_SLACK:
-            middle = (inside + outside) / 2
-            if points_free(-direction[None] * middle, *overlap.arrays)[0]:
-                outside = middle
-            else:
-                inside = middle
-        return -direction * outside
+def touching_point(agent: Agent, body: Body, direction: FloatArray) -> FloatArray:
+    """The agent centre (2,) [m], relative to `body`, at which it touches the body to push it in `direction`, a unit vector.
+
+    That is where the ray from the body's centre against the direction leaves the places at which the agent overlaps it,
+    found by bisection; all of a convex body is before the tangent at its hindmost point.
+    """
+    overlap = agent_obstacles(agent, body, tolerance=0.0)
+    inside, outside = (
+        0.0,
+        agent.radius
+        + max(
+            float((core @ -direction).max()) + part.edge_radius
+            for core, part in zip(body.cores, body.parts, strict=True)
+        ),
+    )
+    while outside - inside > NUMERIC_SLACK:
+        middle = (inside + outside) / 2
+        if points_free(-direction[None] * middle, *overlap.arrays)[0]:
+            outside = middle
+        else:
+            inside = middle
+    return -direction * outside
 
 
 def _runs(level: Level, solution: Solution) -> Iterator[_Run]:

@@ -1,30 +1,94 @@
 """`manipuzzle check`: scenes in the physics preview."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from converter.preview import check_scene
-from evaluate.inputs import read_scenes
+from converter.image_file import write_png
+from converter.plan import Plan, read_plan
+from converter.preview.picture import report_drawing, summary
+from converter.preview.report import SceneReport
+from converter.raster import paint
+from converter.scene import Scene
+from evaluate.inputs import read_scenes, require_writable
+from evaluate.names import safe_name
 from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.parallel import in_order
+from evaluate.scene_check import check
+from pcg.errors import InputError
+from planner.verify import require_same_scene
+
+PICTURE_WIDTH_PX = 600
 
 
-def run(paths: Sequence[Path], *, preset: str | None, tolerance: float | None, as_json: bool) -> bool:
+@dataclass(frozen=True)
+class Request:
+    """What to find out about every scene.
+
+    Attributes:
+        static: Only whether the scene can be set up and begun.
+        push: How far to drive against every object from four sides [m]; None for not at all.
+        picture: Folder for a picture of each scene; None for no pictures.
+    """
+
+    static: bool = False
+    push: float | None = None
+    picture: Path | None = None
+
+
+def run(
+    paths: Sequence[Path],
+    plans: Sequence[Path],
+    request: Request,
+    *,
+    preset: str | None,
+    tolerance: float | None,
+    workers: int,
+    as_json: bool,
+) -> bool:
     """Runs the command; see `evaluate.cli.check`."""
     scenes = read_scenes(paths, preset, tolerance)
+    tasks = list(zip(scenes, _plans_of(scenes, plans), strict=True))
+    if request.picture is not None:
+        require_writable(request.picture)
     with progress() as bar:
-        checks = [check_scene(scene) for scene in bar.track(scenes, description="scenes")]
+        found = in_order(partial(_checked, request), tasks, workers)
+        reports = list(bar.track(found, total=len(tasks), description="scenes"))
     if as_json:
-        print_json(
-            {
-                "scenes": [
-                    {"scene": check.scene, "valid": check.valid, "problems": [asdict(p) for p in check.problems]}
-                    for check in checks
-                ]
-            }
-        )
+        print_json({"scenes": [report.document() for report in reports]})
     else:
-        rows = [(c.scene, c.valid, "; ".join(p.message for p in c.problems)) for c in checks]
-        print_table(["scene", "valid", "problems"], rows)
-        print_line(f"{sum(check.valid for check in checks)} of {len(checks)} scenes are valid")
-    return all(check.valid for check in checks)
+        print_table(["scene", "all well", "found"], [(r.scene, r.all_well, summary(r)) for r in reports])
+        print_line(f"{sum(report.valid for report in reports)} of {len(reports)} scenes are valid")
+    return all(report.all_well for report in reports)
+
+
+def _checked(request: Request, task: tuple[Scene, Plan | None]) -> SceneReport:
+    scene, plan = task
+    report = check(scene, plan, drives=not request.static, push_distance=request.push)
+    if request.picture is not None:
+        image = paint(report_drawing(scene, report), PICTURE_WIDTH_PX)
+        write_png(request.picture / f"{safe_name(scene.name)}.png", image)
+    return report
+
+
+def _plans_of(scenes: Sequence[Scene], paths: Sequence[Path]) -> list[Plan | None]:
+    """The plan of each scene, if there is one.
+
+    Raises:
+        InputError: a plan belongs to none of the scenes, or two belong to one.
+    """
+    found: dict[str, Plan] = {}
+    hashes = {scene.geometry_hash for scene in scenes}
+    for path in paths:
+        plan = read_plan(path)
+        if plan.scene_hash not in hashes:
+            if len(scenes) == 1:
+                require_same_scene(scenes[0], plan, str(path))
+            raise InputError(str(path), f"plan of a scene that is not given: {plan.scene!r} ({plan.scene_hash})")
+        if plan.scene_hash in found:
+            raise InputError(str(path), f"a second plan for {plan.scene!r}; check one at a time")
+        if not plan.solved:
+            raise InputError(str(path), f"no plan to play back: its status is {plan.status}")
+        found[plan.scene_hash] = plan
+    return [found.get(scene.geometry_hash) for scene in scenes]

@@ -231,11 +231,8 @@ def test_check_lists_problems(run: Run):
     result = run("check", "blocked.yaml", "room.yaml", "--json")
     assert result.exit_code == 1
     blocked, room = document(result)["scenes"]
-    assert (blocked["scene"], blocked["valid"], room) == (
-        "blocked",
-        False,
-        {"scene": "room", "valid": True, "problems": []},
-    )
+    assert (blocked["scene"], blocked["valid"], blocked["reachable"]) == ("blocked", False, [])
+    assert (room["scene"], room["valid"], room["problems"]) == ("room", True, [])
     assert "overlap" in [problem["kind"] for problem in blocked["problems"]]
 
 
@@ -330,7 +327,7 @@ def test_bad_input_is_one_line(run: Run, folder: Path, arguments: list[str], mes
 
 def test_bugs_are_not_hidden(run: Run, monkeypatch: pytest.MonkeyPatch):
     """An error that is not the user's fault keeps its traceback."""
-    monkeypatch.setattr("evaluate.commands.check.check_scene", lambda _: np.zeros(2).reshape(3))
+    monkeypatch.setattr("evaluate.scene_check.check_scene", lambda _: np.zeros(2).reshape(3))
     assert isinstance(run("check", "room.yaml").exception, ValueError)
 
 

@@ -3,15 +3,6 @@
 Nothing may overlap by more than the scene's tolerance, everything lies inside, objects stand on the floor and stay
 where they are when the world is stepped, walls leave the agent room to move, and the goal-object fits into the goal.
 That a scene is valid does not mean that it can be solved.
-
-What to know of pymunk 7:
-
-- Its defaults are meant for pixels: `collision_slop` is 0.1 units, here 10 cm; it is set to the tolerance.
-- `Shape.shapes_collide` fails for shapes that do not touch; `Space.shape_query` does not.
-- The sign of a contact's distance depends on the order in which the engine sorts the two shapes. Contacts exist only
-  where shapes touch, so the depth is the absolute value.
-- The engine's expanding polytope algorithm may degenerate, in deep overlaps of shapes with aligned features, and then
-  answers with a zero normal and no depth. A nudge far below the slack breaks the tie.
 """
 
 import math
@@ -19,29 +10,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pymunk
 
-from converter.scene import NUMERIC_SLACK, OUTER_WALL_PREFIX, Body, Scene
-from converter.shape import FloatArray, Part
-
-AGENT = "agent"
-
-ENGINE_SLACK = 1e-6
-"""Error that the engine's contact depths may have [m]; also the slack of an object's height above the floor."""
+from converter.preview.world import AGENT, ENGINE_SLACK, MEETS_AGENT, MEETS_GOAL_OBJECT, Placed, World
+from converter.scene import NUMERIC_SLACK, OUTER_WALL_PREFIX, Scene
+from converter.shape import FloatArray
 
 MOVED = 1e-3
 """A body that the stepped world moves by more than this is not at rest [m]."""
 
 _STEPS, _TIME_STEP = 100, 0.01
-_NUDGES = ((0.83e-7, 0.37e-7), (-0.29e-7, 0.91e-7), (0.53e-7, -0.61e-7))
 _COMPASS = 16
 _GOAL_GRID = 32
-
-# Categories of bodies, so that a query meets only the walls at the right height.
-_MEETS_AGENT, _MEETS_GOAL_OBJECT, _WALL, _MOVABLE = 1, 2, 4, 8
 
 
 class ProblemKind(StrEnum):
@@ -102,7 +84,7 @@ class SceneCheck:
 
 def check_scene(scene: Scene) -> SceneCheck:
     """Builds the scene in pymunk and lists what is wrong with it."""
-    world = _World(scene)
+    world = World(scene)
     problems = (
         *_overlaps(world),
         *_outside(world),
@@ -114,127 +96,7 @@ def check_scene(scene: Scene) -> SceneCheck:
     return SceneCheck(scene.name, problems)
 
 
-@dataclass(frozen=True, eq=False)
-class _Placed:
-    """A wall, an object or the agent in the engine."""
-
-    name: str
-    bottom_top: tuple[float, float]
-    body: pymunk.Body
-    shapes: tuple[pymunk.Shape, ...]
-
-    def meets_in_height(self, other: "_Placed") -> bool:
-        return _heights_meet(self.bottom_top, other.bottom_top)
-
-    @property
-    def box(self) -> FloatArray:
-        """(2, 2) [m]: lower and upper corner of the bounding box."""
-        boxes = [shape.cache_bb() for shape in self.shapes]
-        lower = [min(box.left for box in boxes), min(box.bottom for box in boxes)]
-        upper = [max(box.right for box in boxes), max(box.top for box in boxes)]
-        return np.array([lower, upper])
-
-
-@dataclass(frozen=True, eq=False)
-class _Contact:
-    """An overlap: with what, how deep [m], and the unit normal (2,) between the two, zero if the engine failed."""
-
-    other: _Placed
-    depth: float
-    normal: FloatArray
-
-
-class _World:
-    """The scene as a pymunk space: static walls, an agent and objects that can move but not turn, no gravity.
-
-    Attributes:
-        allowed: The penetration that still counts as touching [m].
-    """
-
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-        self.allowed = scene.tolerance + ENGINE_SLACK
-        self.space = pymunk.Space()
-        self.space.collision_slop = self.allowed
-        self.space.on_collision(begin=self._ignore_other_heights)
-        self.owner: dict[pymunk.Shape, _Placed] = {}
-        self.walls = [self._place(wall, pymunk.Body.STATIC, self._category(wall)) for wall in scene.walls]
-        self.objects = [self._place(body, pymunk.Body.DYNAMIC, _MOVABLE) for body in scene.objects]
-        agent = scene.agent
-        disc = Part(np.zeros((1, 2)), agent.radius)
-        cylinder = Body(AGENT, np.array([*agent.position, agent.height / 2]), agent.height, (disc,))
-        self.agent = self._place(cylinder, pymunk.Body.DYNAMIC, _MOVABLE)
-
-    @property
-    def movable(self) -> list[_Placed]:
-        """The objects and the agent."""
-        return [*self.objects, self.agent]
-
-    def contacts(self, placed: _Placed) -> list[_Contact]:
-        """What `placed` overlaps in the plane, whatever the heights, and how."""
-        place = placed.body.position
-        contacts = self._contacts(placed)
-        for nudge in _NUDGES:
-            if all(contact.normal.any() for contact in contacts):
-                break
-            placed.body.position = place + nudge
-            contacts = self._contacts(placed)
-        placed.body.position = place
-        for shape in placed.shapes:
-            shape.cache_bb()  # which also moves the shape back to its body
-        return contacts
-
-    def _contacts(self, placed: _Placed) -> list[_Contact]:
-        return [
-            _Contact(
-                self.owner[info.shape],
-                max(abs(point.distance) for point in info.contact_point_set.points),
-                np.array(info.contact_point_set.normal),
-            )
-            for shape in placed.shapes
-            for info in self.space.shape_query(shape)
-            if info.shape is not None
-        ]
-
-    def _place(self, body: Body, body_type: int, categories: int) -> _Placed:
-        # With an infinite moment of inertia nothing turns.
-        frame = pymunk.Body(1.0, math.inf, body_type=body_type)
-        frame.position = float(body.position[0]), float(body.position[1])
-        radii = (part.edge_radius for part in body.parts)
-        shapes = tuple(_shape(frame, core, radius) for core, radius in zip(body.cores, radii, strict=True))
-        placed = _Placed(body.name, body.bottom_top, frame, shapes)
-        self.space.add(frame, *shapes)
-        for shape in shapes:
-            # Shapes of one group do not collide: the parts of a body may overlap.
-            shape.filter = pymunk.ShapeFilter(group=len(self.space.bodies), categories=categories)
-            self.owner[shape] = placed
-        return placed
-
-    def _category(self, wall: Body) -> int:
-        agent, goal_object = (0.0, self.scene.agent.height), self.scene.goal_object.bottom_top
-        meets_agent = _MEETS_AGENT if _heights_meet(wall.bottom_top, agent) else 0
-        meets_goal_object = _MEETS_GOAL_OBJECT if _heights_meet(wall.bottom_top, goal_object) else 0
-        return meets_agent | meets_goal_object | _WALL
-
-    def _ignore_other_heights(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-        first, second = arbiter.shapes
-        arbiter.process_collision = self.owner[first].meets_in_height(self.owner[second])
-
-
-def _heights_meet(first: tuple[float, float], second: tuple[float, float]) -> bool:
-    return min(first[1], second[1]) - max(first[0], second[0]) > NUMERIC_SLACK
-
-
-def _shape(frame: pymunk.Body, core: FloatArray, radius: float) -> pymunk.Shape:
-    vertices = [(float(x), float(y)) for x, y in core]
-    if len(vertices) == 1:
-        return pymunk.Circle(frame, radius, vertices[0])
-    if len(vertices) == 2:
-        return pymunk.Segment(frame, vertices[0], vertices[1], radius)
-    return pymunk.Poly(frame, vertices, radius=radius)
-
-
-def _overlaps(world: _World) -> Iterator[Problem]:
+def _overlaps(world: World) -> Iterator[Problem]:
     deepest: dict[tuple[str, str], float] = {}
     for placed in world.movable:
         for contact in world.contacts(placed):
@@ -248,7 +110,7 @@ def _overlaps(world: _World) -> Iterator[Problem]:
             yield Problem(ProblemKind.OVERLAP, pair, depth, f"{pair[0]} and {pair[1]} overlap by {depth:.6g} m")
 
 
-def _outside(world: _World) -> Iterator[Problem]:
+def _outside(world: World) -> Iterator[Problem]:
     """Centres outside the bounds, and bodies that reach beyond the outer faces of the outer walls."""
     outer = [wall.box for wall in world.walls if wall.name.startswith(OUTER_WALL_PREFIX)]
     room = np.array([np.min(outer, axis=0)[0], np.max(outer, axis=0)[1]]) if outer else None
@@ -275,7 +137,7 @@ def _floating(scene: Scene) -> Iterator[Problem]:
             yield Problem(ProblemKind.NOT_ON_FLOOR, (body.name,), bottom, message)
 
 
-def _stuck(world: _World) -> Iterator[Problem]:
+def _stuck(world: World) -> Iterator[Problem]:
     """Whether walls block a step of a tenth of the agent's radius in every direction.
 
     Only walls count, because objects can be carried away. The free directions at a contact end at its tangent, and a
@@ -298,15 +160,15 @@ def _stuck(world: _World) -> Iterator[Problem]:
     yield Problem(ProblemKind.AGENT_STUCK, (AGENT,), None, f"walls keep the agent from moving by {step:.6g} m")
 
 
-def _swept_disc(start: FloatArray, end: FloatArray, radius: float) -> _Placed:
+def _swept_disc(start: FloatArray, end: FloatArray, radius: float) -> Placed:
     """A disc of `radius` [m] on its way from `start` to `end`, (2,) [m] each; it meets walls at the agent's height."""
     frame = pymunk.Body(body_type=pymunk.Body.STATIC)
     shape = pymunk.Segment(frame, (float(start[0]), float(start[1])), (float(end[0]), float(end[1])), radius)
-    shape.filter = pymunk.ShapeFilter(mask=_MEETS_AGENT)
-    return _Placed(AGENT, (-math.inf, math.inf), frame, (shape,))
+    shape.filter = pymunk.ShapeFilter(mask=MEETS_AGENT)
+    return Placed(AGENT, (-math.inf, math.inf), frame, (shape,))
 
 
-def _goal(world: _World) -> Iterator[Problem]:
+def _goal(world: World) -> Iterator[Problem]:
     goal, bounds = world.scene.goal, world.scene.bounds
     lower = np.maximum(goal.position - goal.size / 2, bounds[0])
     upper = np.minimum(goal.position + goal.size / 2, bounds[1])
@@ -319,7 +181,7 @@ def _goal(world: _World) -> Iterator[Problem]:
         yield Problem(ProblemKind.GOAL_COVERED, (goal.object,), None, message)
 
 
-def _covered(world: _World, lower: FloatArray, upper: FloatArray) -> bool:
+def _covered(world: World, lower: FloatArray, upper: FloatArray) -> bool:
     """Whether walls certainly forbid every centre of the goal-object in a rectangle.
 
     The footprint contains a disc of radius r about its centre. If a centre q is allowed, every wall is at least
@@ -330,12 +192,12 @@ def _covered(world: _World, lower: FloatArray, upper: FloatArray) -> bool:
     radius = max(0.0, *(-shape.point_query(body.body.position).distance for shape in body.shapes))
     cell = (upper - lower) / _GOAL_GRID
     nearer = radius - world.allowed - float(np.hypot(*cell)) / 2
-    walls = pymunk.ShapeFilter(mask=_MEETS_GOAL_OBJECT)
+    walls = pymunk.ShapeFilter(mask=MEETS_GOAL_OBJECT)
     xs, ys = (lower[axis] + cell[axis] * (np.arange(_GOAL_GRID) + 0.5) for axis in (0, 1))
     return all(world.space.point_query_nearest((float(x), float(y)), nearer, walls) for x, y in product(xs, ys))
 
 
-def _moving(world: _World) -> Iterator[Problem]:
+def _moving(world: World) -> Iterator[Problem]:
     """Steps the world for a second, which changes it."""
     starts = [placed.body.position for placed in world.movable]
     for _ in range(_STEPS):

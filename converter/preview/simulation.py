@@ -1,0 +1,144 @@
+"""A scene in motion: what is pushed moves, and stops as soon as it is not pushed any more.
+
+Objects lie on a floor with friction, so they keep no velocity from one step to the next; what moves them are contacts
+alone. How a pushed object turns follows from its mass and inertia, as for a floor whose limit surface is an ellipsoid
+with the object's radius of gyration as characteristic length (Howe and Cutkosky 1996; Lynch and Mason 1996).
+
+Contacts up to the scene's tolerance are touching, and have no effect.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pymunk
+
+from converter.preview.world import Placed, World
+from converter.scene import Scene
+
+SPEED = 1.0
+"""Of the agent at most [m/s]."""
+
+DENSITY = 500.0
+"""Of the objects, that of wood [kg/m^3]."""
+
+AGENT_MASS = 50.0
+"""[kg]."""
+
+FRICTION = 0.5
+"""Of agent and objects; that of a pair is the product. Walls have none, so that what slides along them is not held."""
+
+MOVED = 1e-3
+"""Whatever moves by more than this has been moved [m]."""
+
+Place = tuple[float, float]
+"""x and y [m], world."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Two bodies that touched.
+
+    Attributes:
+        bodies: Their names: `agent` first, then objects, then walls.
+        depth: Greatest penetration [m].
+        where: Place of that contact [m], world.
+    """
+
+    bodies: tuple[str, str]
+    depth: float
+    where: Place
+
+
+@dataclass(frozen=True)
+class Moved:
+    """An object that is not where it was.
+
+    Attributes:
+        object: Its name.
+        start: Where its centre was [m], world.
+        end: Where it is.
+        turned: Angle by which it turned [rad], counter-clockwise.
+    """
+
+    object: str
+    start: Place
+    end: Place
+    turned: float
+
+    @property
+    def distance(self) -> float:
+        """How far the centre is from where it was [m]."""
+        return math.dist(self.start, self.end)
+
+
+class Simulation:
+    """A world with a clock. State: the world, and the contacts so far.
+
+    Args:
+        scene: The scene at its start.
+        time_step: [s].
+    """
+
+    def __init__(self, scene: Scene, time_step: float) -> None:
+        self.world = World(scene, DENSITY)
+        self.time_step = time_step
+        self.time_s = 0.0
+        space = self.world.space
+        space.damping = 0.0
+        space.iterations = 20
+        space.on_collision(pre_solve=self._touch)
+        for placed in self.world.movable:
+            for shape in placed.shapes:
+                shape.friction = FRICTION
+        world = self.world
+        self._order = {placed.name: i for i, placed in enumerate([world.agent, *world.objects, *world.walls])}
+        self._touches: dict[tuple[str, str], Touch] = {}
+        self._starts = {placed.name: (placed.place, placed.body.angle) for placed in self.world.objects}
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """All pairs that have touched since the last `forget`, in the order of their first contact."""
+        return tuple(self._touches.values())
+
+    def step(self) -> None:
+        """Moves everything on by `time_step`."""
+        self.world.space.step(self.time_step)
+        self.time_s += self.time_step
+
+    def forget(self) -> None:
+        """Forgets all contacts, and takes the present places for the starts of the objects."""
+        self._touches.clear()
+        self._starts = {placed.name: (placed.place, placed.body.angle) for placed in self.world.objects}
+
+    def moved(self, more_than: float = MOVED) -> tuple[Moved, ...]:
+        """The objects that have moved since the last `forget`, with a corner at least, by `more_than` that [m]."""
+        found = []
+        for placed in self.world.objects:
+            place, angle = self._starts[placed.name]
+            moved = Moved(placed.name, place, placed.place, placed.body.angle - angle)
+            if moved.distance + abs(moved.turned) * reach(placed) > more_than:
+                found.append(moved)
+        return tuple(found)
+
+    def _touch(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        first, second = (self.world.owner[shape] for shape in arbiter.shapes)
+        if not first.meets_in_height(second):
+            arbiter.process_collision = False
+            return
+        contacts = arbiter.contact_point_set.points
+        deepest = max(contacts, key=lambda point: abs(point.distance))
+        depth = abs(deepest.distance)
+        arbiter.process_collision = depth > self.world.allowed
+        one, other = sorted((first.name, second.name), key=self._order.__getitem__)
+        pair = one, other
+        if pair not in self._touches or depth > self._touches[pair].depth:
+            x, y = (deepest.point_a + deepest.point_b) / 2
+            self._touches[pair] = Touch(pair, depth, (x, y))
+
+
+def reach(placed: Placed) -> float:
+    """Distance of the farthest point of a body from its centre [m], or a little more."""
+    lower, upper = abs(placed.box - np.array(placed.place))
+    return float(np.hypot(*np.maximum(lower, upper)))
