@@ -410,6 +410,33 @@ def render(
     _exit(run(inputs, out, format_, scene, as_json=json))
 
 
+@app.command(short_help="Export plans as tables over time or as PDDL.")
+def export(
+    plans: Annotated[list[Path], typer.Argument(metavar="PLAN", help="Plan files (.json).")],
+    *,
+    out: Out,
+    to: Annotated[str, typer.Option(metavar="NAME", help="csv, npz (NumPy) or pddl.")] = "csv",
+    speed: Annotated[float, typer.Option(metavar="M/S", help="Full speed of the agent.")] = 0.5,
+    acceleration: Annotated[
+        float, typer.Option(metavar="M/S2", min=0, help="Between way-points; 0 for constant speed without stops.")
+    ] = 1.0,
+    grasp_time: Annotated[float, typer.Option(metavar="SECONDS", help="Rest at each grasp and each release.")] = 0.0,
+    step: Annotated[float, typer.Option(metavar="SECONDS", help="Time between rows; way-points are rows too.")] = 0.02,
+    scene: Annotated[
+        Path | None, typer.Option(metavar="SCENE", help="Scene of plans whose files hold none.", show_default=False)
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Export plans to DIR/{name}.csv or .npz, or as PDDL to {name}-domain.pddl, {name}-problem.pddl and {name}.plan.
+
+    Example:  manipuzzle export out/plans/*.json --to npz --speed 0.5 --step 0.02 --out out/trajectories
+    """
+    from evaluate.commands.export import profile_of, run
+
+    profile = profile_of(speed, acceleration, grasp_time)
+    _exit(run(plans, out, to=to, scene_path=scene, profile=profile, step=step, as_json=json))
+
+
 @app.command(short_help="Write down where a person would put the objects.")
 def demonstrate(
     scene: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (.yaml, .g).")],

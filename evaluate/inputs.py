@@ -6,12 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from converter.formats import read_scene
+from converter.plan import Plan, read_plan
 from converter.preset import with_preset, with_tolerance
 from converter.scene import Scene
 from evaluate.names import require_distinct, safe_name
 from pcg.errors import InputError
 from pcg.level import Level
 from pcg.level_set import iter_level_set
+from planner.verify import require_same_scene
 
 SCENE_SUFFIXES = (".yaml", ".yml", ".g")
 PLAN_SUFFIXES = (".json",)
@@ -76,6 +78,25 @@ def read_scenes(paths: Sequence[Path], preset: str | None = None, tolerance: flo
     scenes = [read_scene_file(path, preset, tolerance) for path in paths]
     require_distinct([safe_name(scene.name) for scene in scenes], "scenes")
     return scenes
+
+
+def read_plan_with_scene(path: Path, given: Scene | None = None) -> tuple[Plan, Scene]:
+    """The plan at `path` and the scene that it was made for.
+
+    Args:
+        path: The plan's file.
+        given: The scene of a plan whose file holds none.
+
+    Raises:
+        InputError: the file is no valid plan, holds no scene, or `given` is another scene than the plan's.
+    """
+    plan = read_plan(path)
+    if given is not None:
+        require_same_scene(given, plan, str(path))
+        return plan, given
+    if plan.scene_data is None:
+        raise InputError(str(path), "the file holds no scene; name the scene's file by --scene")
+    return plan, plan.scene_data
 
 
 def read_playable_levels(path: Path) -> list[Level]:

@@ -1,0 +1,85 @@
+"""`manipuzzle export`: plans as tables over time, or as PDDL."""
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from converter.formats.pddl import DOMAIN, plan_text, problem_text
+from converter.formats.plan_tables import write_csv, write_npz
+from converter.plan import Plan
+from converter.scene import Scene
+from converter.trajectory import SpeedProfile, TimedPlan
+from evaluate.inputs import read_plan_with_scene, read_scene_file, require_choice, require_writable
+from evaluate.names import require_distinct, safe_name
+from evaluate.output import print_json, print_line, print_table, progress
+from pcg.files import write_text
+
+FORMATS = ("csv", "npz", "pddl")
+
+Writer = Callable[[Path, str, Scene, Plan], list[Path]]
+"""Writes a plan into a folder under a name and returns its files."""
+
+
+def profile_of(speed: float, acceleration: float, grasp_time: float) -> SpeedProfile:
+    """The profile of the command's options; acceleration 0 stands for constant speed.
+
+    Raises:
+        InputError: a value is not allowed.
+    """
+    return SpeedProfile(speed, acceleration if acceleration != 0 else math.inf, grasp_time)
+
+
+def table_writer(to: str, profile: SpeedProfile, step: float) -> Writer:
+    """Writes `{name}.csv` or `{name}.npz`."""
+    write = {"csv": write_csv, "npz": write_npz}[to]
+
+    def write_table(folder: Path, name: str, scene: Scene, plan: Plan) -> list[Path]:
+        file = folder / f"{name}.{to}"
+        write(file, TimedPlan(scene, plan, profile).rows(step))
+        return [file]
+
+    return write_table
+
+
+def write_pddl(folder: Path, name: str, scene: Scene, plan: Plan) -> list[Path]:
+    """Writes `{name}-domain.pddl`, `{name}-problem.pddl` and `{name}.plan`."""
+    texts = {
+        f"{name}-domain.pddl": DOMAIN,
+        f"{name}-problem.pddl": problem_text(scene),
+        f"{name}.plan": plan_text(scene, plan),
+    }
+    files = []
+    for file_name, text in texts.items():
+        write_text(folder / file_name, text)
+        files.append(folder / file_name)
+    return files
+
+
+def run(
+    paths: Sequence[Path],
+    out: Path,
+    *,
+    to: str,
+    scene_path: Path | None,
+    profile: SpeedProfile,
+    step: float,
+    as_json: bool,
+) -> bool:
+    """Runs the command; see `evaluate.cli.export`."""
+    require_choice("--to", to, FORMATS)
+    given = None if scene_path is None else read_scene_file(scene_path)
+    plans = [read_plan_with_scene(path, given) for path in paths]
+    names = [safe_name(path.stem) for path in paths]
+    require_distinct(names, "plans")
+    require_writable(out)
+    write = write_pddl if to == "pddl" else table_writer(to, profile, step)
+    results: list[tuple[str, list[Path]]] = []
+    with progress() as bar:
+        for name, (plan, scene) in zip(names, bar.track(plans, description="plans"), strict=True):
+            results.append((name, write(out, name, scene, plan)))
+    if as_json:
+        print_json({"plans": [{"plan": name, "files": [str(file) for file in files]} for name, files in results]})
+    else:
+        print_table(["plan", "file"], [(name, str(file)) for name, files in results for file in files])
+        print_line(f"{len(results)} plans exported to {out}")
+    return True
