@@ -218,9 +218,9 @@ def _distance_to_box(core: FloatArray, window: _Window) -> FloatArray:
     lower, upper = core.min(axis=0), core.max(axis=0)
     x = np.maximum(lower[0] - window.x, window.x - upper[0])[None, :]
     y = np.maximum(lower[1] - window.y, window.y - upper[1])[:, None]
-    outside = np.hypot(np.maximum(x, 0.0), np.maximum(y, 0.0))
-    within: FloatArray = np.minimum(np.maximum(x, y), 0.0)
-    return outside + within
+    from_core: FloatArray = np.hypot(np.maximum(x, 0.0), np.maximum(y, 0.0))
+    from_core += np.minimum(np.maximum(x, y), 0.0)
+    return from_core
 
 
 def _coverage(distance: FloatArray, pixel: float) -> FloatArray:
@@ -249,11 +249,12 @@ def _blend(pixels: Image, layers: list[tuple[Color, FloatArray]]) -> None:
         full = weights >= 1
         pixels[full] = _bytes(color)
         mixed &= ~full
-    rows, columns = np.nonzero(mixed)
-    values = pixels[rows, columns] * (1.0 - sum(weights[rows, columns] for _, weights in layers))[:, np.newaxis]
+    edge = np.nonzero(mixed)
+    ground = 1.0 - np.sum([weights[edge] for _, weights in layers], axis=0)
+    values = pixels[edge] * ground[:, np.newaxis]
     for color, weights in layers:
-        values += weights[rows, columns][:, np.newaxis] * _bytes(color)
-    pixels[rows, columns] = np.rint(values)
+        values += weights[edge][:, np.newaxis] * _bytes(color)
+    pixels[edge] = np.rint(values)
 
 
 def _bytes(color: Color) -> npt.NDArray[np.uint8]:

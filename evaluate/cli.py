@@ -74,6 +74,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print exactly one JSON docum
 Out = Annotated[Path, typer.Option(metavar="DIR", help="Folder for the results; made if missing.")]
 Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of all random choices.")]
 Scenes = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scene files (.yaml, .g).")]
+Theme = Annotated[str, typer.Option(metavar="NAME", help="Colours: paper or colorblind.")]
 Preset = Annotated[
     str | None,
     typer.Option(metavar="NAME", help="Change the geometry to a preset first: clear or published.", show_default=False),
@@ -395,19 +396,34 @@ def render(
     ],
     *,
     out: Out,
-    format_: Annotated[str, typer.Option("--format", metavar="NAME", help="png, or gif for plans.")] = "png",
+    format_: Annotated[
+        str, typer.Option("--format", metavar="NAME", help="png or svg; of plans also gif, mp4, or html: a player.")
+    ] = "png",
+    sheet: Annotated[bool, typer.Option("--sheet", help="One contact sheet with names and verdicts.")] = False,
+    storyboard: Annotated[bool, typer.Option("--storyboard", help="The key frames of plans: each grasp.")] = False,
+    theme: Theme = "paper",
+    width: Annotated[
+        int | None, typer.Option(metavar="PIXELS", min=16, help="Width of pictures and frames.", show_default=False)
+    ] = None,
+    speed: Annotated[
+        float, typer.Option(metavar="M/S", min=0.01, max=1000, help="Speed of the agent in animations.")
+    ] = 1.0,
     scene: Annotated[
         Path | None, typer.Option(metavar="SCENE", help="Scene of plans whose files hold none.", show_default=False)
     ] = None,
     json: Json = False,
 ) -> None:
-    """Draw levels, scenes and plans to DIR/{name}.{format}.
+    """Draw levels, scenes and plans to DIR/{name}.{format}, or with --sheet all of them to DIR/sheet.{format}.
+
+    html makes a page that plays plans, those of one scene side by side, without a network.
 
     Example:  manipuzzle render out/plans/*.json --out out/pictures --format gif
     """
-    from evaluate.commands.render import run
+    from evaluate.commands.render import Request, run
+    from evaluate.picture_files import Style
 
-    _exit(run(inputs, out, format_, scene, as_json=json))
+    style = Style(theme=theme, width_px=width, speed=speed)
+    _exit(run(inputs, out, Request(format_, scene, style, sheet=sheet, storyboard=storyboard), as_json=json))
 
 
 @app.command(short_help="Export plans as tables over time or as PDDL.")

@@ -9,15 +9,16 @@ from converter.preview import check_scene
 from converter.scene import Scene
 from evaluate.commands.convert import scene_of
 from evaluate.commands.generate import generate
-from evaluate.commands.render import level_painter, plan_painter, scene_painter
 from evaluate.commands.solve import solve_to_file
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.output import print_line, print_table
+from evaluate.picture_files import draw_to_file
+from evaluate.subjects import level_subject, plan_subject, scene_subject
 from evaluate.trial import warm_up
 from pcg.data_folder import data_folder
 from pcg.errors import InputError
-from pcg.request import Request
 from pcg.level_set import manifest_entry
+from pcg.request import Request
 from planner import Settings, settings_for
 
 LEVELS = 12
@@ -63,7 +64,7 @@ def _levels(out: Path, count: int, settings: Settings) -> None:
     rows = []
     for generated in generate(count, SEED, Request(), out / "levels"):
         level, entry = generated.level, manifest_entry(generated)
-        level_painter(level)(out / "levels" / f"{level.name}.png")
+        draw_to_file(level_subject(level), out / "levels" / f"{level.name}.png")
         scene = scene_of(level)
         write_scene(out / "scenes" / f"{scene.name}.yaml", scene)
         rows.append((level.name, entry.pushes, entry.occluded, *_solved(scene, settings, out)))
@@ -77,11 +78,12 @@ def _puzzles(out: Path, scenes: Sequence[Scene], settings: Settings) -> None:
 
 def _solved(scene: Scene, settings: Settings, out: Path) -> tuple[object, ...]:
     """Checks, solves, verifies and draws a scene; the values of `RESULT_COLUMNS`."""
-    scene_painter(scene)(out / "scenes" / f"{scene.name}.png")
+    draw_to_file(scene_subject(scene), out / "scenes" / f"{scene.name}.png")
     outcome, result = solve_to_file(scene, settings, SEED, out / "plans")
     if result.plan is not None:
-        plan_painter(scene, outcome.plan, "png")(Path(result.plan).with_suffix(".png"))
-        plan_painter(scene, outcome.plan, "gif")(Path(result.plan).with_suffix(".gif"))
+        file = Path(result.plan)
+        for suffix in (".png", ".gif", ".html"):
+            draw_to_file(plan_subject(file.stem, scene, outcome.plan), file.with_suffix(suffix))
     valid = check_scene(scene).valid
     return valid, result.status, result.time_s, result.path_length_m, result.pick_places, result.verified
 

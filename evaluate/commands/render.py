@@ -1,91 +1,102 @@
-"""`manipuzzle render`: pictures of levels, scenes and plans."""
+"""`manipuzzle render`: pictures, animations and pages of levels, scenes and plans."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from converter.animate_plan import plan_frames
-from converter.image_file import write_gif, write_png
-from converter.plan import Plan, read_plan
-from converter.render_level import draw_level
-from converter.render_plan import draw_plan
-from converter.render_scene import draw_scene
 from converter.scene import Scene
-from evaluate.inputs import (
-    is_plan,
-    is_scene,
-    read_playable_levels,
-    read_scene_file,
-    require_choice,
-    require_writable,
-)
+from converter.theme import THEMES
+from evaluate.inputs import read_scene_file, require_choice, require_writable
 from evaluate.names import require_distinct, safe_name
 from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.picture_files import FORMATS, PAGE, STILL, Picture, Style, write_pictures
+from evaluate.subjects import Subject, as_storyboard, read_subjects
 from pcg.errors import InputError
-from pcg.level import Level
-from planner.verify import require_same_scene
 
-FORMATS = ("png", "gif")
-FPS = 20
-
-Painter = Callable[[Path], None]
-"""Writes one picture to a path."""
+SHEET = "sheet"
+"""Stem of the file of a contact sheet."""
 
 
-def level_painter(level: Level) -> Painter:
-    """Draws a level as PNG."""
-    return lambda path: write_png(path, draw_level(level))
+@dataclass(frozen=True)
+class Request:
+    """Options of the command.
+
+    Attributes:
+        format: One of `FORMATS`.
+        scene: Scene file of plans that hold none.
+        style: Theme, width and speed.
+        sheet: All inputs on one contact sheet.
+        storyboard: Key frames of plans.
+    """
+
+    format: str
+    scene: Path | None
+    style: Style
+    sheet: bool = False
+    storyboard: bool = False
 
 
-def scene_painter(scene: Scene) -> Painter:
-    """Draws a scene as PNG."""
-    return lambda path: write_png(path, draw_scene(scene))
-
-
-def plan_painter(scene: Scene, plan: Plan, format_: str) -> Painter:
-    """Draws a plan as PNG, or animates it as GIF."""
-    if format_ == "gif":
-        return lambda path: write_gif(path, plan_frames(scene, plan, fps=FPS), FPS)
-    return lambda path: write_png(path, draw_plan(scene, plan))
-
-
-def run(inputs: Sequence[Path], out: Path, format_: str, scene_path: Path | None, *, as_json: bool) -> bool:
+def run(inputs: Sequence[Path], out: Path, request: Request, *, as_json: bool) -> bool:
     """Runs the command; see `evaluate.cli.render`."""
-    require_choice("--format", format_, FORMATS)
-    given = None if scene_path is None else read_scene_file(scene_path)
-    jobs = [job for path in inputs for job in _jobs(path, format_, given)]
-    require_distinct([name for name, _ in jobs], "inputs")
+    _require_possible(request)
+    given = None if request.scene is None else read_scene_file(request.scene)
+    subjects = [subject for path in inputs for subject in _subjects(path, request, given)]
+    pictures = _pictures(subjects, out, request)
+    require_distinct([picture.file.stem for picture in pictures], "inputs")
     require_writable(out)
-    results = []
     with progress() as bar:
-        for name, paint in bar.track(jobs, description="pictures"):
-            file = out / f"{name}.{format_}"
-            paint(file)
-            results.append((name, str(file)))
+        for _ in bar.track(write_pictures(pictures), description="pictures", total=len(pictures)):
+            pass
     if as_json:
-        print_json({"pictures": [{"name": name, "file": file} for name, file in results]})
+        print_json({"pictures": [{"name": picture.file.stem, "file": str(picture.file)} for picture in pictures]})
     else:
-        print_table(["name", "file"], results)
-        print_line(f"{len(results)} pictures written to {out}")
+        print_table(["name", "file"], [(picture.file.stem, str(picture.file)) for picture in pictures])
+        print_line(f"{len(pictures)} {'file' if len(pictures) == 1 else 'files'} written to {out}")
     return True
 
 
-def _jobs(path: Path, format_: str, given: Scene | None) -> list[tuple[str, Painter]]:
-    """The pictures of an input: their names, and functions that paint them; reading is done, painting is not."""
-    if is_plan(path):
-        plan = read_plan(path)
-        return [(safe_name(path.stem), plan_painter(_scene_of(path, plan, given), plan, format_))]
-    if format_ == "gif":
-        raise InputError(str(path), "gif shows plans in motion; draw levels and scenes as png")
-    if is_scene(path):
-        scene = read_scene_file(path)
-        return [(safe_name(scene.name), scene_painter(scene))]
-    return [(safe_name(level.name), level_painter(level)) for level in read_playable_levels(path)]
+def _require_possible(request: Request) -> None:
+    require_choice("--format", request.format, FORMATS)
+    require_choice("--theme", request.style.theme, list(THEMES))
+    if request.sheet and request.storyboard:
+        raise InputError("--sheet", "a sheet shows whole plans; leave out --sheet or --storyboard")
+    for option, wanted in (("--sheet", request.sheet), ("--storyboard", request.storyboard)):
+        if wanted and request.format not in STILL:
+            raise InputError(option, f"makes a picture; --format must be {' or '.join(STILL)}, found {request.format}")
 
 
-def _scene_of(path: Path, plan: Plan, given: Scene | None) -> Scene:
-    if given is not None:
-        require_same_scene(given, plan, str(path))
-        return given
-    if plan.scene_data is None:
-        raise InputError(str(path), "the file holds no scene; name the scene's file by --scene")
-    return plan.scene_data
+def _subjects(path: Path, request: Request, given: Scene | None) -> Iterable[Subject]:
+    for subject in read_subjects(path, given):
+        if request.format not in STILL and subject.motion is None:
+            raise InputError(str(path), f"{request.format} shows plans in motion; draw {subject.kind}s as png or svg")
+        yield as_storyboard(subject) if request.storyboard else subject
+
+
+def _pictures(subjects: Sequence[Subject], out: Path, request: Request) -> list[Picture]:
+    """The files to write: one for each input, for each scene of a page, or for all."""
+    if request.sheet:
+        groups = {SHEET: list(subjects)}
+    elif request.format == PAGE:
+        groups = _pages(subjects)
+    else:
+        require_distinct([subject.name for subject in subjects], "inputs")
+        groups = {subject.name: [subject] for subject in subjects}
+    return [
+        Picture(out / f"{name}.{request.format}", tuple(group), request.style, is_sheet=request.sheet)
+        for name, group in groups.items()
+    ]
+
+
+def _pages(subjects: Sequence[Subject]) -> dict[str, list[Subject]]:
+    """Plans of one scene share a page, called after the scene, or after the plan if it is the only one."""
+    by_scene: dict[tuple[str, str], list[Subject]] = {}
+    for subject in subjects:
+        if subject.motion is not None:
+            scene = subject.motion.scene
+            by_scene.setdefault((scene.name, scene.geometry_hash), []).append(subject)
+    pages: dict[str, list[Subject]] = {}
+    for (scene_name, _), group in by_scene.items():
+        name = group[0].name if len(group) == 1 else safe_name(scene_name)
+        require_distinct([*pages, name], "pages")
+        pages[name] = group
+    return pages
