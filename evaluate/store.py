@@ -85,6 +85,7 @@ _TYPES = {
     "plan": "BLOB",
     "preset": "TEXT",
 }
+_UNWRITABLE = "cannot be written, the finished trials in it are kept"
 _COLUMNS = [column.name for column in fields(TrialRow)]
 _TABLES = {
     "trial": ", ".join(f"{name} {_TYPES.get(name, 'TEXT NOT NULL')}" for name in _COLUMNS),
@@ -221,11 +222,11 @@ class StoredTrials:
                 yield row if row.verified is None else replace(row, verified=bool(row.verified))
 
     @contextlib.contextmanager
-    def _explained(self) -> Iterator[None]:
+    def _explained(self, problem: str = "not usable as a study's database") -> Iterator[None]:
         try:
             yield
         except sqlite3.Error as error:
-            raise InputError(str(self._path), f"not usable as a study's database: {error}") from None
+            raise InputError(str(self._path), f"{problem}: {error}") from None
 
 
 class TrialStore(StoredTrials):
@@ -257,7 +258,7 @@ class TrialStore(StoredTrials):
         Raises:
             InputError: the disk is full or the file cannot be written.
         """
-        with self._explained(), self._connection:
+        with self._explained(_UNWRITABLE), self._connection:
             self._connection.execute(_INSERT, astuple(row))
 
     def add_scenes(self, scenes: Iterable[Scene]) -> None:
@@ -266,7 +267,7 @@ class TrialStore(StoredTrials):
         Raises:
             InputError: the disk is full or the file cannot be written.
         """
-        with self._explained(), self._connection:
+        with self._explained(_UNWRITABLE), self._connection:
             self._connection.executemany("INSERT OR IGNORE INTO scene VALUES (?, ?, ?)", map(_scene_row, scenes))
 
     def set_study(self, study: StudyRecord) -> None:
@@ -276,7 +277,7 @@ class TrialStore(StoredTrials):
             InputError: the disk is full or the file cannot be written.
         """
         document = zlib.compress(json.dumps(asdict(study)).encode())
-        with self._explained(), self._connection:
+        with self._explained(_UNWRITABLE), self._connection:
             self._connection.execute("INSERT OR REPLACE INTO study VALUES (1, ?)", (document,))
 
 
