@@ -8,10 +8,11 @@ from the agent's own place, where it can get without coming closer to any wall.
 
 import numpy as np
 
-from converter.scene import Body, Scene
+from converter.scene import Scene
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace, ObstacleSet
 from planner.contact_curve import ContactCurve
+from planner.kernel import BoolArray, segments_free
 from planner.problem import Problem
 from planner.visibility import ShortestPathTree
 
@@ -20,6 +21,12 @@ SLACK = 1e-6
 
 DIRECTIONS, RINGS = 16, 4
 """Where a wider disc may begin: in so many directions, and at so many distances in each."""
+
+_ANGLES = np.tile(2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS, RINGS)
+_RING = np.repeat(np.arange(1, RINGS + 1) / RINGS, DIRECTIONS)[:, None] * np.column_stack(
+    [np.cos(_ANGLES), np.sin(_ANGLES)]
+)
+"""Points of the rings in the unit disc."""
 
 GOAL_GRID = 3
 """Placements a side that stand for the goal rectangle."""
@@ -76,43 +83,61 @@ def touching(curve: ContactCurve, obstacles: ObstacleSet, placements: FloatArray
     return np.vstack(found)
 
 
-def _widest(scene: Scene, places: _Places) -> float:
-    room = float(np.ptp(scene.bounds, axis=0).min())
-    widths = np.unique(np.round(wall_gaps(scene.walls), 6))
-    widths = widths[(widths > 0) & (widths < room)]
-    if len(widths) == 0:
-        return room
-    passes, fails = -1, len(widths)
-    while fails - passes > 1:
-        middle = (passes + fails) // 2
-        if _fits(scene, places, widths[middle] / 2):
-            passes = middle
-        else:
-            fails = middle
-    if passes >= 0:
-        return float(widths[passes])
-    # A disc may fit through every gap and yet be too wide for the room.
-    agent_fits = widths[0] > 2 * scene.agent.radius and _fits(scene, places, scene.agent.radius)
-    return float(widths[0]) if agent_fits else 0.0
+class _Walls:
+    """The walls of a scene among which discs of all sizes move.
+
+    Attributes:
+        cores: (n, 2) [m], world, of all parts of all walls.
+        radii: Edge radius [m] of each part.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._walls = scene.walls
+        self._bounds = scene.bounds
+        self.cores = [core + wall.position[:2] for wall in scene.walls for core in wall.cores]
+        self.radii = np.array([part.edge_radius for wall in scene.walls for part in wall.parts])
+        self._starts = np.vstack([np.empty((0, 2)), *self.cores])
+        self._ends = np.vstack([np.empty((0, 2)), *(np.roll(core, -1, axis=0) for core in self.cores)])
+        self._lengths = np.array([len(core) for core in self.cores], dtype=np.int64)
+        self._first = np.concatenate([[0], np.cumsum(self._lengths)]).astype(np.int64)
+        self._boxes = np.array([[*core.min(axis=0), *core.max(axis=0)] for core in self.cores]).reshape(-1, 4)
+
+    def gaps(self) -> FloatArray:
+        """(n,) [m]: the distances between all pairs of parts; a pair that overlaps may give any value."""
+        if len(self.cores) < 2:
+            return np.empty(0)
+        distances = point_segment_distances(self._starts, self._starts, self._ends)
+        first = self._first[:-1]
+        between = np.minimum.reduceat(np.minimum.reduceat(distances, first, axis=0), first, axis=1)
+        between = np.minimum(between, between.T) - self.radii[:, None] - self.radii
+        return np.asarray(between[np.triu_indices(len(self.cores), 1)])
+
+    def clearances(self, places: FloatArray) -> FloatArray:
+        """(n,) [m]: the distance of each of `places` (n, 2), all outside of walls, to the nearest wall."""
+        distances = point_segment_distances(places, self._starts, self._ends) - np.repeat(self.radii, self._lengths)
+        return np.asarray(distances.min(axis=1, initial=np.inf))
+
+    def space(self, radius: float) -> ConfigurationSpace:
+        """Where the centre of a disc may be."""
+        # Walls of one shape, such as the blocks of a level, become one set that is moved to their places.
+        shapes: dict[tuple[object, ...], ObstacleSet] = {}
+        moved = []
+        for wall in self._walls:
+            shape = tuple((core.tobytes(), part.edge_radius) for core, part in zip(wall.cores, wall.parts, strict=True))
+            if shape not in shapes:
+                shapes[shape] = ObstacleSet.of(wall.cores, [radius + part.edge_radius - SLACK for part in wall.parts])
+            moved.append(shapes[shape].moved(wall.position[:2]))
+        return ConfigurationSpace(ObstacleSet.union(moved).with_free_corners(), self._bounds)
+
+    def segments_free(self, radius: float, start: FloatArray, ends: FloatArray) -> BoolArray:
+        """For each of `ends` (n, 2) whether a disc gets there from `start` (2,) on a straight line."""
+        rho = radius + self.radii - SLACK
+        boxes = self._boxes + rho[:, None] * np.array([-1.0, -1.0, 1.0, 1.0])
+        starts = np.tile(start, (len(ends), 1))
+        return np.asarray(segments_free(starts, ends, self._starts, self._first, rho, boxes))
 
 
-def wall_gaps(walls: tuple[Body, ...]) -> FloatArray:
-    """(n,) [m]: the distances between all pairs of walls' parts; a pair that overlaps may give any value."""
-    cores = [core + wall.position[:2] for wall in walls for core in wall.cores]
-    radii = np.array([part.edge_radius for wall in walls for part in wall.parts])
-    if len(cores) < 2:
-        return np.empty(0)
-    owner = np.repeat(np.arange(len(cores)), [len(core) for core in cores])
-    points = np.vstack(cores)
-    ends = np.vstack([np.roll(core, -1, axis=0) for core in cores])
-    distances = _point_segment_distances(points, points, ends)
-    first = np.flatnonzero(np.diff(owner, prepend=-1))
-    between = np.minimum.reduceat(np.minimum.reduceat(distances, first, axis=0), first, axis=1)
-    between = np.minimum(between, between.T) - radii[:, None] - radii
-    return np.asarray(between[np.triu_indices(len(cores), 1)])
-
-
-def _point_segment_distances(points: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
+def point_segment_distances(points: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
     """(n, m) [m]: the distance of each of n points to each of m segments."""
     along = ends - starts
     squares = np.maximum((along**2).sum(axis=1), np.finfo(np.float64).tiny)
@@ -121,11 +146,32 @@ def _point_segment_distances(points: FloatArray, starts: FloatArray, ends: Float
     return np.asarray(np.linalg.norm(offsets - t[..., None] * along, axis=2))
 
 
-def _fits(scene: Scene, places: _Places, radius: float) -> bool:
+def _widest(scene: Scene, places: _Places) -> float:
+    walls = _Walls(scene)
+    room = float(np.ptp(scene.bounds, axis=0).min())
+    widths = np.unique(np.round(walls.gaps(), 6))
+    widths = widths[(widths > 0) & (widths < room)]
+    if len(widths) == 0:
+        return room
+    passes, fails = -1, len(widths)
+    while fails - passes > 1:
+        middle = (passes + fails) // 2
+        if _fits(walls, places, widths[middle] / 2):
+            passes = middle
+        else:
+            fails = middle
+    if passes >= 0:
+        return float(widths[passes])
+    # A disc may fit through every gap and yet be too wide for the room.
+    radius = scene.agent.radius
+    return float(widths[0]) if widths[0] > 2 * radius and _fits(walls, places, radius) else 0.0
+
+
+def _fits(walls: _Walls, places: _Places, radius: float) -> bool:
     """Whether a disc of `radius` gets from the start to the goal-object and to the goal."""
-    space = _disc_space(scene, radius)
-    starts = _widened(scene, places.start, radius, space)
-    ends = [_widened(scene, place, radius, space) for place in (places.at_object, places.at_goal)]
+    space = walls.space(radius)
+    starts = _widened(walls, places.start, radius, space)
+    ends = [_widened(walls, place, radius, space) for place in (places.at_object, places.at_goal)]
     if not all(map(len, ends)):
         return False
     while len(starts):
@@ -136,45 +182,17 @@ def _fits(scene: Scene, places: _Places, radius: float) -> bool:
     return False
 
 
-def _disc_space(scene: Scene, radius: float) -> ConfigurationSpace:
-    """Where the centre of a disc may be among the walls."""
-    # Walls of one shape, such as the blocks of a level, become one set that is moved to their places.
-    shapes: dict[tuple[object, ...], ObstacleSet] = {}
-    moved = []
-    for wall in scene.walls:
-        shape = tuple((core.tobytes(), part.edge_radius) for core, part in zip(wall.cores, wall.parts, strict=True))
-        if shape not in shapes:
-            shapes[shape] = ObstacleSet.of(wall.cores, [radius + part.edge_radius - SLACK for part in wall.parts])
-        moved.append(shapes[shape].moved(wall.position[:2]))
-    return ConfigurationSpace(ObstacleSet.union(moved).with_free_corners(), scene.bounds)
-
-
-def _widened(scene: Scene, places: FloatArray, radius: float, space: ConfigurationSpace) -> FloatArray:
+def _widened(walls: _Walls, places: FloatArray, radius: float, space: ConfigurationSpace) -> FloatArray:
     """Free places (k, 2) [m] of a disc of `radius` [m] that stand for `places` (n, 2) of the agent.
 
     From a place with clearance c a disc gets out of the corner between two walls, which may be at right angles, by
     sqrt(2) (radius - c) while its distance to both grows.
     """
-    found = [places[space.points_free(places)]]
-    for place in places[~space.points_free(places)]:
-        clearance = _clearance(scene, place)
-        reach = np.sqrt(2) * (radius - clearance) + 2 * SLACK
-        ring = reach * np.repeat(np.arange(1, RINGS + 1) / RINGS, DIRECTIONS)
-        angles = np.tile(2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS, RINGS)
-        around = place + ring[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    is_free = space.points_free(places)
+    narrow = places[~is_free]
+    found = [places[is_free]]
+    for place, clearance in zip(narrow, walls.clearances(narrow), strict=True):
+        around = place + (np.sqrt(2) * (radius - clearance) + 2 * SLACK) * _RING
         around = around[space.points_free(around)]
-        if len(around):
-            starts = np.tile(place, (len(around), 1))
-            leave = _disc_space(scene, clearance).segments_free(starts, around)
-            found.append(around[leave])
+        found.append(around[walls.segments_free(clearance, place, around)])
     return np.vstack(found)
-
-
-def _clearance(scene: Scene, place: FloatArray) -> float:
-    """The distance [m] of a place outside of all walls to the nearest one."""
-    return min(
-        float(_point_segment_distances((place - wall.position[:2])[None], core, np.roll(core, -1, 0)).min())
-        - part.edge_radius
-        for wall in scene.walls
-        for core, part in zip(wall.cores, wall.parts, strict=True)
-    )

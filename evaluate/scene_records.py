@@ -50,18 +50,21 @@ def scene_records(folder: Path, frame: pl.DataFrame) -> Iterator[SceneRecord]:
     named = frame.group_by("scene", maintain_order=True).agg(pl.col("scene_hash").first())
     ranked = frame.filter("solved").sort("pick_places", "path_length_m", "row")
     best = dict(ranked.group_by("scene").agg(pl.col("row").first()).iter_rows())
-    with StoredTrials(folder) as store, reading(folder) as connection:
-        scenes = {scene.geometry_hash: scene for scene in store.scenes()}
-        for name, hash_ in named.iter_rows():
-            if (scene := scenes.get(hash_)) is None:
-                continue
-            found = connection.execute("SELECT plan FROM trial WHERE rowid = ?", (best.get(name),)).fetchone()
-            plan = _plan(found, str(folder))
-            statistics = cache.statistics(hash_, scene)
-            if plan is not None:
-                statistics = replace(statistics, pick_places=plan.pick_places, monotone=is_monotone(plan))
-            yield SceneRecord(name, scene, plan, statistics)
-    cache.save()
+    try:
+        with StoredTrials(folder) as store, reading(folder) as connection:
+            scenes = {scene.geometry_hash: scene for scene in store.scenes()}
+            for name, hash_ in named.iter_rows():
+                if (scene := scenes.get(hash_)) is None:
+                    continue
+                found = connection.execute("SELECT plan FROM trial WHERE rowid = ?", (best.get(name),)).fetchone()
+                plan = _plan(found, str(folder))
+                statistics = cache.statistics(hash_, scene)
+                if plan is not None:
+                    statistics = replace(statistics, pick_places=plan.pick_places, monotone=is_monotone(plan))
+                yield SceneRecord(name, scene, plan, statistics)
+    finally:
+        # What took long is kept, also when the report is interrupted.
+        cache.save()
 
 
 def _plan(found: tuple[bytes | None] | None, where: str) -> Plan | None:
