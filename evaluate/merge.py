@@ -10,6 +10,8 @@ from pcg.errors import InputError
 
 Value = TypeVar("Value")
 MAX_NAME = 100
+JOINT = " + "
+"""Between the names of the studies that were merged."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +73,10 @@ def _records(sources: Sequence[Path], target: TrialStore) -> list[StudyRecord]:
 
 def _united(records: Sequence[StudyRecord]) -> StudyRecord:
     """The study of all scenes, methods and seeds; its number of trials is left open."""
-    names = dict.fromkeys(record.name for record in records)
+    names = dict.fromkeys(name for record in records for name in record.name.split(JOINT))
     return replace(
         records[0],
-        name=" + ".join(names)[:MAX_NAME],
+        name=JOINT.join(names)[:MAX_NAME],
         scenes=_distinct(scene for record in records for scene in record.scenes),
         methods=_distinct(method for record in records for method in record.methods),
         seeds=_distinct(seed for record in records for seed in record.seeds),

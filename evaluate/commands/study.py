@@ -1,14 +1,14 @@
 """`manipuzzle study`: every scene with every method and seed."""
 
-import time
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from evaluate.output import Progress, log, print_json, print_line, print_table, progress
+from evaluate.output import log, print_json, print_line, print_table, progress
 from evaluate.specification import read_study
-from evaluate.store import TrialRow, TrialStore
+from evaluate.store import TrialStore
 from evaluate.study import StudySummary, run_study, study_table
+from evaluate.study_progress import FIELD, StudyProgress
 from evaluate.tables import Cell, by_method
 from evaluate.workers import Execute, WorkerStartError, run_tasks
 from pcg.errors import InputError
@@ -25,8 +25,8 @@ def run(
     execute = _execution(workers, cluster, out)
     for note in study.notes:
         log(note)
-    with TrialStore(out) as store, progress("rate", "solved") as bar:
-        display = _Display(bar, study.name, study.size)
+    with TrialStore(out) as store, progress(FIELD) as bar:
+        display = StudyProgress(bar, study)
         try:
             summary = run_study(study, store, execute, on_trial=display.on_trial)
         except KeyboardInterrupt:
@@ -58,26 +58,6 @@ def _execution(workers: int, cluster: str | None, out: Path) -> Execute:
     except ImportError as error:
         raise InputError("--cluster", f"needs Dask: pip install 'manipuzzle[cluster]' ({error})") from None
     return partial(run_on_cluster, address=cluster, name=str(out.resolve()))
-
-
-class _Display:
-    """The progress of a study: trials of this run, their rate, and how many are solved."""
-
-    def __init__(self, bar: Progress, name: str, trials: int) -> None:
-        self._bar, self._left, self._run, self._solved = bar, trials, 0, 0
-        self._started = time.monotonic()
-        self._task = bar.add_task(name, total=trials, rate="", solved="")
-
-    def on_trial(self, row: TrialRow | None) -> None:
-        """Counts a trial; None is one that had been run before, which would spoil the estimate of the time left."""
-        if row is None:
-            self._left -= 1
-            self._bar.update(self._task, total=self._left)
-            return
-        self._run += 1
-        self._solved += row.verified is True
-        rate = self._run / (time.monotonic() - self._started)
-        self._bar.update(self._task, advance=1, rate=f"{rate:.3g}/s", solved=f"{self._solved} solved")
 
 
 def _document(summary: StudySummary, by_name: Mapping[str, Cell]) -> dict[str, object]:
