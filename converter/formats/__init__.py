@@ -13,6 +13,12 @@ def _read_rai_g(path: Path) -> Scene:
     return read_rai_g(path)
 
 
+def _write_rai_g(path: Path, scene: Scene) -> None:
+    from converter.formats.rai_g_export import write_rai_g  # noqa: PLC0415 - most programs never write a .g file
+
+    write_rai_g(path, scene)
+
+
 def _write_mjcf(path: Path, scene: Scene) -> None:
     from converter.formats.mjcf import write_mjcf  # noqa: PLC0415 - most programs never write a model
 
@@ -20,7 +26,7 @@ def _write_mjcf(path: Path, scene: Scene) -> None:
 
 
 _READERS = {".yaml": read_scene_yaml, ".yml": read_scene_yaml, ".g": _read_rai_g}
-_WRITERS = {".yaml": write_scene_yaml, ".yml": write_scene_yaml, ".xml": _write_mjcf}
+_WRITERS = {".yaml": write_scene_yaml, ".yml": write_scene_yaml, ".g": _write_rai_g, ".xml": _write_mjcf}
 
 
 def read_scene(path: Path) -> Scene:

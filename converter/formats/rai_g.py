@@ -5,7 +5,8 @@
   belong to it. Other shapes that collide (`contact` given and not 0) are walls.
 - `goal` is the goal rectangle; it and its markers never collide. The goal-object is `obj`, or the only object.
 - `ssBox size [x y z r]` has outer size x, y, z and edges rounded by r; `ssCylinder size [h r s]` has height h and
-  radius r.
+  radius r; `ssCvx core [x y z ...] size [r]` is a core swept by r, here an upright prism about its frame.
+- Files that `converter.formats.rai_g_export` wrote say tolerance and preset at `floor`, the goal-object at `goal`.
 
 [L] Levit, Ortiz-Haro, Toussaint: Solving Sequential Manipulation Puzzles by Finding Easier Subproblems, ICRA 2024.
 """
@@ -19,6 +20,7 @@ import numpy as np
 from converter.formats.body_document import MAX_LENGTH
 from converter.formats.rai_pose import IDENTITY, Pose, frame_pose
 from converter.formats.rai_text import Frame, read_frames
+from converter.preset import PRESETS, PUBLISHED
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import FloatArray, Part, denoised, rotation
 from pcg.errors import InputError
@@ -26,7 +28,11 @@ from pcg.errors import InputError
 TOLERANCE = 1e-3
 """Collision tolerance of the authors' engine when the scenes were published [m]."""
 
-_NEVER_COLLIDING = frozenset({"floor", "goal", "goal_visible", "goalLarge", "goalSmall", "sub-goal1"})
+SHARP = 1e-6
+"""Radii below this are taken for none [m]: the engine wants the corners of `ssCvx` round."""
+
+NEVER_COLLIDING = frozenset({"floor", "goal", "goal_visible", "goalLarge", "goalSmall", "sub-goal1"})
+"""Names of frames that are never part of a wall, an object or the agent."""
 _NO_SHAPE = frozenset({"none", "camera", "marker"})
 _ALIGNED = 1e-9
 
@@ -35,11 +41,31 @@ def _disc(radius: float) -> Part:
     return Part(np.zeros((1, 2)), radius)
 
 
+def _swept(size: tuple[float, ...]) -> tuple[Part, float]:
+    """The upright prism over a core swept by a sphere; `size` holds the radius and the core's coordinates."""
+    points = np.reshape(size[1:], (-1, 3))
+    radius, half = size[0] if size[0] >= SHARP else 0.0, points[:, 2].max()
+    lower, upper = (points[np.abs(points[:, 2] - z) <= _ALIGNED, :2] for z in (-half, half))
+    if len(lower) + len(upper) != len(points) or not _same_points(lower, upper):
+        raise ValueError("the core must be an upright prism about the middle of its height")
+    middle = lower.mean(axis=0)
+    # Around the middle, counter-clockwise; two points have no order.
+    order = np.argsort(np.arctan2(*(lower - middle).T[::-1])) if len(lower) > 2 else slice(None)
+    return Part(lower[order], radius), float(denoised(2 * (half + radius)))
+
+
+def _same_points(first: FloatArray, second: FloatArray) -> bool:
+    gaps = np.hypot(*np.moveaxis(first[:, np.newaxis] - second, 2, 0))
+    return bool(first.shape == second.shape and len(first) and (gaps.min(axis=0) <= _ALIGNED).all())
+
+
+_SWEPT = "ssCvx"
 _SHAPES: dict[str, tuple[int, Callable[[tuple[float, ...]], tuple[Part, float]]]] = {
     "ssBox": (4, lambda size: (Part.box(size[:2], size[3]), size[2])),
     "box": (3, lambda size: (Part.box(size[:2]), size[2])),
     "ssCylinder": (3, lambda size: (_disc(size[1]), size[0])),
     "cylinder": (2, lambda size: (_disc(size[1]), size[0])),
+    _SWEPT: (1, _swept),
 }
 """Of each shape the count of the numbers of its `size`, and how these become a footprint and a height."""
 
@@ -80,15 +106,16 @@ def read_rai_g(path: Path) -> Scene:
     for solid in solids:
         by_joint[_joint(solid.placed.mover)].append(solid)
     objects = _objects(by_joint["rigid"], tree)
+    floor, goal = tree.frame("floor"), tree.frame("goal")
     return Scene(
         name=path.stem,
-        bounds=_bounds(tree.solid(tree.frame("floor"))),
-        tolerance=TOLERANCE,
+        bounds=_bounds(tree.solid(floor)),
+        tolerance=_tolerance(floor),
         agent=_agent(by_joint["transXY"], str(path)),
         walls=tuple(_body(solid.frame, solid.placed.pose, [solid]) for solid in by_joint[""]),
         objects=objects,
-        goal=_goal(tree.solid(tree.frame("goal")), [body.name for body in objects]),
-        preset="published",
+        goal=_goal(tree.solid(goal), [body.name for body in objects]),
+        preset=_preset(floor),
         source={"file": path.name, "format": "rai"},
     )
 
@@ -140,7 +167,7 @@ class _Tree:
 
     def collides(self, frame: Frame) -> bool:
         """Whether the frame has a shape that is part of a wall, an object or the agent."""
-        if frame.name in _NEVER_COLLIDING or _shape(frame) in _NO_SHAPE:
+        if frame.name in NEVER_COLLIDING or _shape(frame) in _NO_SHAPE:
             return False
         has_joint = frame.attributes.get("joint", "none") != "none" and "size" in frame.attributes
         return has_joint or frame.attributes.get("contact", (0.0,)) not in ((0.0,), "false")
@@ -153,11 +180,14 @@ class _Tree:
             raise InputError(where, f"{frame.name}: shape {shape!r}; allowed are {', '.join(_SHAPES)}")
         count, build = _SHAPES[shape]
         size = frame.numbers("size", (count,))
+        if shape == _SWEPT:
+            # The core belongs to the size; without it there is none.
+            size = (*size, *_core(frame))
         try:
             part, height = build(size)
         except ValueError as error:
             raise InputError(frame.places["size"], f"{frame.name}: {error}") from None
-        if height <= 0 or max(size) > MAX_LENGTH:
+        if height <= 0 or max(map(abs, size)) > MAX_LENGTH:
             raise InputError(frame.places["size"], f"{frame.name}: sizes must be positive, at most {MAX_LENGTH:g}")
         return _Solid(frame, self.placed(frame), part, height)
 
@@ -166,6 +196,31 @@ def _shape(frame: Frame) -> str:
     without = "" if "size" in frame.attributes else "none"
     shape = frame.attributes.get("shape", frame.attributes.get("type", without))
     return shape if isinstance(shape, str) else " ".join(f"{number:g}" for number in shape)
+
+
+def _core(frame: Frame) -> tuple[float, ...]:
+    """The coordinates of the points of a core."""
+    core = frame.attributes.get("core")
+    if core is None or isinstance(core, str) or len(core) < 3 or len(core) % 3 != 0:
+        raise InputError(frame.places.get("core", frame.where), f"{frame.name}: core needs a list of points x y z")
+    return core
+
+
+def _tolerance(floor: Frame) -> float:
+    if "tolerance" not in floor.attributes:
+        return TOLERANCE
+    (tolerance,) = floor.numbers("tolerance", (1,))
+    if not 0 <= tolerance <= MAX_LENGTH:
+        raise InputError(floor.places["tolerance"], f"floor: tolerance must be from 0 to {MAX_LENGTH:g} m")
+    return tolerance
+
+
+def _preset(floor: Frame) -> str | None:
+    """The file's own preset; files without tolerance are taken for published ones."""
+    preset = floor.attributes.get("preset", None if "tolerance" in floor.attributes else PUBLISHED.name)
+    if preset is not None and preset not in PRESETS:
+        raise InputError(floor.places["preset"], f"floor: preset must be one of {', '.join(PRESETS)}")
+    return None if preset is None else str(preset)
 
 
 def _joint(mover: Frame | None) -> str:
@@ -227,7 +282,13 @@ def _color(frame: Frame) -> tuple[float, float, float] | None:
 
 
 def _goal(solid: _Solid, objects: Sequence[str]) -> Goal:
-    name = "obj" if "obj" in objects or len(objects) != 1 else objects[0]
+    default = "obj" if "obj" in objects or len(objects) != 1 else objects[0]
+    name = str(solid.frame.attributes.get("object", default))
+    if name not in objects and "object" in solid.frame.attributes:
+        where = solid.frame.places["object"]
+        raise InputError(
+            where, f"{solid.frame.name}: object {name[:60]!r} is none of the objects ({', '.join(objects)})"
+        )
     if name not in objects:
         raise InputError(
             solid.frame.where,

@@ -21,7 +21,7 @@ from evaluate.parallel import in_order
 from pcg.errors import InputError
 from pcg.level import Level
 
-FORMATS = {"yaml": ".yaml", "mjcf": ".xml"}
+FORMATS = {"yaml": ".yaml", "g": ".g", "mjcf": ".xml"}
 """Suffix of the files of each format."""
 
 

@@ -31,7 +31,7 @@ def test_an_unknown_suffix_is_refused_with_those_allowed(tmp_path: Path):
     """Reading and writing list the suffixes that they know."""
     with pytest.raises(InputError, match=re.escape("the suffix must be one of .yaml .yml .g")):
         read_scene(tmp_path / "tiny.json")
-    with pytest.raises(InputError, match=re.escape("tiny.txt: scenes are written as .yaml .yml .xml")):
+    with pytest.raises(InputError, match=re.escape("tiny.txt: scenes are written as .yaml .yml .g .xml")):
         write_scene(tmp_path / "tiny.txt", SCENE)
 
 

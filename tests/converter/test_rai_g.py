@@ -87,7 +87,7 @@ def test_a_cylinder_without_joint_is_a_round_wall(tmp_path: Path):
         (ROOM, "room.g, line 6: goal: no goal-object"),
         (ROOM + BOX.replace("obj", "a") + BOX.replace("obj", "b"), "none of the objects (a, b) is called obj"),
         (ROOM.replace("transXY", "none") + BOX, "room.g: one shape below a frame with joint:transXY wanted"),
-        (ROOM + BOX.replace("ssBox", "ssCvx"), "room.g, line 7: obj: shape 'ssCvx'; allowed are ssBox, box"),
+        (ROOM + BOX.replace("ssBox", "torus"), "room.g, line 7: obj: shape 'torus'; allowed are ssBox, box"),
         (ROOM + BOX.replace("size:[.4", "size:[.01"), "room.g, line 7: obj: size 0.01 x 0.2 is smaller than two edge"),
         (ROOM + BOX.replace("size:[.4", "size:[-1"), "room.g, line 7: obj: size -1.0 x 0.2 must be positive"),
         (ROOM + BOX.replace("size:[.4 ", "size:["), "room.g, line 7: obj: size needs 4 numbers"),
