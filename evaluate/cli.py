@@ -651,15 +651,19 @@ def diff(
 def bench(
     *,
     quick: Annotated[bool, typer.Option("--quick", help="A few seconds; the figures mean little.")] = False,
+    study: Annotated[bool, typer.Option("--study", help="Time the running of studies instead.")] = False,
+    trials: Annotated[
+        int, typer.Option(metavar="N", min=10, max=10_000_000, help="With --study: trials that do nothing.")
+    ] = 10_000,
     json: Json = False,
 ) -> None:
     """Time motions, grasps, collision tests and solving, each beside a peer timed in the same run; about a minute.
 
     Example:  manipuzzle bench
     """
-    from evaluate.commands.bench import run
+    from evaluate.commands.bench import run, run_study_bench
 
-    _exit(run(quick=quick, as_json=json))
+    _exit(run_study_bench(trials, as_json=json) if study else run(quick=quick, as_json=json))
 
 
 def _exit(all_well: bool) -> None:  # noqa: FBT001 - the one thing that it is about

@@ -113,13 +113,14 @@ def warm_up(*every: Settings) -> None:
 
 def prepare(methods: Sequence[Method]) -> None:
     """Loads and compiles what trials with these methods need, the verification included."""
-    scene = _warm_up_scene()
+    scene = warm_up_scene()
     for method in methods:
         method.planner.prepare(scene, method.settings)
     run_trial(scene, Settings(method="Rnd+R"), 0)
 
 
-def _warm_up_scene() -> Scene:
+def warm_up_scene() -> Scene:
+    """A scene that every method can plan for at once."""
     cube = (Part.box((0.2, 0.2)),)
     return Scene(
         name="warm-up",
