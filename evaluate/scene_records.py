@@ -1,6 +1,7 @@
 """The scenes of a study with the best plan found for each, read one at a time."""
 
 import json
+import sqlite3
 import zlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
@@ -9,10 +10,10 @@ from typing import Any
 
 import polars as pl
 
+from converter.formats import scene_yaml
 from converter.plan import Plan, plan_from_document
 from converter.scene import Scene
 from evaluate.scene_statistics import SceneStatistics, geometry_statistics_of, is_monotone
-from evaluate.store import StoredTrials
 from evaluate.trial_frame import reading
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
@@ -51,13 +52,13 @@ def scene_records(folder: Path, frame: pl.DataFrame) -> Iterator[SceneRecord]:
     ranked = frame.filter("solved").sort("pick_places", "path_length_m", "row")
     best = dict(ranked.group_by("scene").agg(pl.col("row").first()).iter_rows())
     try:
-        with StoredTrials(folder) as store, reading(folder) as connection:
-            scenes = {scene.geometry_hash: scene for scene in store.scenes()}
+        with reading(folder) as connection:
+            places = dict(connection.execute("SELECT scene_hash, rowid FROM scene").fetchall())
             for name, hash_ in named.iter_rows():
-                if (scene := scenes.get(hash_)) is None:
+                if hash_ not in places:
                     continue
-                found = connection.execute("SELECT plan FROM trial WHERE rowid = ?", (best.get(name),)).fetchone()
-                plan = _plan(found, str(folder))
+                scene = _scene(connection, places[hash_], f"{folder}: {name}")
+                plan = _plan(connection, best.get(name), f"{folder}: {name}")
                 statistics = cache.statistics(hash_, scene)
                 if plan is not None:
                     statistics = replace(statistics, pick_places=plan.pick_places, monotone=is_monotone(plan))
@@ -67,14 +68,23 @@ def scene_records(folder: Path, frame: pl.DataFrame) -> Iterator[SceneRecord]:
         cache.save()
 
 
-def _plan(found: tuple[bytes | None] | None, where: str) -> Plan | None:
+def _scene(connection: sqlite3.Connection, place: int, where: str) -> Scene:
+    name, blob = connection.execute("SELECT name, document FROM scene WHERE rowid = ?", (place,)).fetchone()
+    return scene_yaml.from_document(_unpacked(blob, where), where, name)
+
+
+def _plan(connection: sqlite3.Connection, place: int | None, where: str) -> Plan | None:
+    found = connection.execute("SELECT plan FROM trial WHERE rowid = ?", (place,)).fetchone()
     if found is None or found[0] is None:
         return None
+    return plan_from_document(_unpacked(found[0], where), where)
+
+
+def _unpacked(blob: bytes, where: str) -> Any:
     try:
-        document = json.loads(zlib.decompress(found[0]))
+        return json.loads(zlib.decompress(blob))
     except (zlib.error, ValueError) as error:
-        raise InputError(where, f"a stored plan is damaged: {error}") from None
-    return plan_from_document(document, where)
+        raise InputError(where, f"what is stored is damaged: {error}") from None
 
 
 class _Cache:

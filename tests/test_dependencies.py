@@ -25,8 +25,8 @@ HOMES = {
     "cv2": {"converter/h264.py", "converter/image_file.py", "converter/raster.py"},
     "distributed": {"evaluate/cluster.py"},
     "gymnasium": {"pcg/train.py"},
-    "jinja2": {"converter/viewer_page.py"},
-    "matplotlib": {"pcg/learning_curve.py"},
+    "jinja2": {"converter/viewer_page.py", "evaluate/report_html.py"},
+    "matplotlib": {"evaluate/plot_style.py", "evaluate/plots.py", "pcg/learning_curve.py"},
     "numba": {
         "pcg/random_kernel.py",
         "pcg/solver_kernel.py",
@@ -40,6 +40,15 @@ HOMES = {
     "onnx": {"pcg/export_policy.py"},
     "onnxruntime": {"pcg/policy.py"},
     "ompl": {"evaluate/bench_peers.py", "planner/motion_ompl.py"},
+    "polars": {
+        "evaluate/plots.py",
+        "evaluate/report.py",
+        "evaluate/scene_records.py",
+        "evaluate/tables_methods.py",
+        "evaluate/tables_scenes.py",
+        "evaluate/tables_success.py",
+        "evaluate/trial_frame.py",
+    },
     "pymunk": {
         "converter/preview/checks.py",
         "converter/preview/drive.py",
