@@ -211,7 +211,13 @@ def convert(
     inputs: Annotated[list[Path], typer.Argument(metavar="LEVEL|SCENE", help="XSB files, level sets, scene files.")],
     *,
     out: Out,
-    to: Annotated[str, typer.Option(metavar="NAME", help="Format of the scenes: yaml or mjcf (MuJoCo).")] = "yaml",
+    to: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="Format of the scenes: yaml, g (rai), mjcf (MuJoCo) or mjcf-mocap, in which a program moves the objects.",
+        ),
+    ] = "yaml",
     preset: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Geometry: clear (default for levels) or published.", show_default=False),
@@ -256,7 +262,7 @@ def convert(
     workers: Workers = 1,
     json: Json = False,
 ) -> None:
-    """Convert levels and scenes to scene files DIR/{name}.yaml, or .xml for MuJoCo.
+    """Convert levels and scenes to scene files DIR/{name}.yaml, .g, or .xml for MuJoCo.
 
     Of the options only --to, --preset and --tolerance apply to scenes. A level's scene records all of them.
 

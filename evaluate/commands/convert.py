@@ -4,7 +4,7 @@ All inputs are read twice: first to refuse what cannot be used before any work i
 not grow with the number of levels, but for their names.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 from converter.convert import ConversionSettings, convert_level
 from converter.formats import write_scene
+from converter.formats.mjcf import Movable, write_mjcf
 from converter.preset import CLEAR, PRESETS
 from converter.scene import Scene
 from evaluate.inputs import adapted, is_scene, iter_playable_levels, read_scene_file, require_choice, require_writable
@@ -21,8 +22,21 @@ from evaluate.parallel import in_order
 from pcg.errors import InputError
 from pcg.level import Level
 
-FORMATS = {"yaml": ".yaml", "g": ".g", "mjcf": ".xml"}
-"""Suffix of the files of each format."""
+
+@dataclass(frozen=True)
+class Format:
+    """A format of scenes: the suffix of its files, and the function that writes one."""
+
+    suffix: str
+    write: Callable[[Path, Scene], None] = write_scene
+
+
+FORMATS = {
+    "yaml": Format(".yaml"),
+    "g": Format(".g"),
+    "mjcf": Format(".xml"),
+    "mjcf-mocap": Format(".xml", partial(write_mjcf, movable=Movable.MOCAP)),
+}
 
 
 @dataclass(frozen=True)
@@ -31,14 +45,14 @@ class Conversion:
 
     Attributes:
         out: Folder of the results.
-        suffix: Of their files, which names the format.
+        format: What their files are.
         settings: Options for levels.
         preset: Geometry preset that scenes are changed to; None keeps their geometry.
         tolerance: Penetration that counts as touching [m]; None keeps that of the preset or scene.
     """
 
     out: Path
-    suffix: str
+    format: Format
     settings: ConversionSettings
     preset: str | None = None
     tolerance: float | None = None
@@ -120,6 +134,6 @@ def _convert(conversion: Conversion, given: _Input) -> str:
         scene = scene_of(given.source, conversion.settings, conversion.tolerance)
     else:
         scene = read_scene_file(given.source, conversion.preset, conversion.tolerance)
-    file = conversion.out / f"{given.name}{conversion.suffix}"
-    write_scene(file, scene)
+    file = conversion.out / f"{given.name}{conversion.format.suffix}"
+    conversion.format.write(file, scene)
     return str(file)
