@@ -3,11 +3,26 @@
 import math
 import statistics
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from evaluate.statistics import NORMAL_95, deviation, mean, wilson_interval
+from evaluate.statistics import (
+    NORMAL_95,
+    FloatArray,
+    bootstrap_interval,
+    compare,
+    deviation,
+    mean,
+    mean_time,
+    median_time,
+    par2,
+    solved_within,
+    success_rate,
+    wilson_interval,
+)
 
 finite = st.floats(-1e6, 1e6)
 
@@ -54,3 +69,87 @@ def test_impossible_counts_are_refused():
     """More successes than trials are a programming error."""
     with pytest.raises(ValueError, match="3 successes in 2 trials"):
         wilson_interval(3, 2)
+
+
+TIMES = np.array([[1.0, np.inf, 2.0], [3.0, 5.0, np.nan]])
+"""Two runs on three scenes: one is unsolved, one was not run."""
+
+
+def test_success_and_times_of_a_small_matrix():
+    """Four of five runs are solved, their mean is 11 / 4, the middle of all five is 3, PAR2 counts 20 for the other."""
+    assert success_rate(TIMES) == 0.8
+    assert mean_time(TIMES) == 2.75
+    assert median_time(TIMES) == 3.0
+    assert par2(TIMES, limit=10.0) == (11 + 20) / 5
+
+
+def test_without_runs_there_is_no_number():
+    """What was not run has no mean, and no bootstrap interval either."""
+    nothing = np.full((2, 2), np.nan)
+    values = [success_rate(nothing), mean_time(nothing), median_time(nothing), par2(nothing, 1.0)]
+    assert all(math.isnan(value) for value in values)
+    interval = bootstrap_interval(nothing, mean_time, np.random.default_rng(0), resamples=10)
+    assert all(math.isnan(limit) for limit in interval)
+
+
+def test_median_of_mostly_unsolved_runs_is_infinite():
+    """Half of the runs or more without a plan leave no finite median, whatever the others took."""
+    assert median_time(np.array([[1.0], [np.inf], [np.inf]])) == math.inf
+
+
+def test_bootstrap_of_equal_values_has_no_width():
+    """Where every run takes the same time, so does every sample."""
+    times = np.full((5, 3), 2.5)
+    for resampled in ("runs", "scenes"):
+        assert bootstrap_interval(times, mean_time, np.random.default_rng(0), resampled=resampled) == (2.5, 2.5)
+
+
+def test_bootstrap_of_runs_stays_within_scenes():
+    """Scenes of 1 s and 9 s: no draw of runs changes the mean, a draw of scenes does."""
+    times = np.tile([1.0, 9.0], (4, 1))
+    assert bootstrap_interval(times, mean_time, np.random.default_rng(0), resampled="runs") == (5.0, 5.0)
+    assert bootstrap_interval(times, mean_time, np.random.default_rng(0), resampled="scenes") == (1.0, 9.0)
+
+
+def test_bootstrap_interval_of_a_mean_is_that_of_the_normal_distribution():
+    """For 400 normal values the interval of the mean is 1.96 deviations / 20 to either side."""
+    rng = np.random.default_rng(1)
+    values = rng.normal(10.0, 1.0, size=(400, 1))
+    low, high = bootstrap_interval(values, mean_time, rng, resamples=4000)
+    assert (low + high) / 2 == pytest.approx(values.mean(), abs=0.01)
+    assert (high - low) / 2 == pytest.approx(NORMAL_95 * values.std() / 20, rel=0.08)
+
+
+def test_comparison_counts_pairs():
+    """Of five pairs A alone solves one, is clearly faster in one, alike in one, slower in one; one neither solves."""
+    a = np.array([[1.0, 1.0, 1.0, 5.0, np.inf, 1.0]])
+    b = np.array([[np.inf, 2.0, 1.05, 1.0, np.inf, np.nan]])
+    found = compare(a, b, 10.0, np.random.default_rng(0))
+    assert (found.pairs, found.wins, found.ties, found.losses) == (5, 2, 2, 1)
+    assert found.scenes == (2, 2, 1)
+    assert found.difference == pytest.approx((-19 - 1 - 0.05 + 4 + 0) / 5)
+    assert found.interval[0] <= found.difference <= found.interval[1]
+
+
+@given(arrays(float, (3, 4), elements=st.sampled_from([0.5, 1.0, 2.0, math.inf, math.nan])), st.integers(0, 9))
+def test_comparison_is_antisymmetric(times: FloatArray, seed: int):
+    """Swapping the methods swaps wins and losses and turns the sign of the difference."""
+    other = np.roll(times, 1, axis=0)
+    forth = compare(times, other, 5.0, np.random.default_rng(seed), resamples=20)
+    back = compare(other, times, 5.0, np.random.default_rng(seed), resamples=20)
+    assert (forth.wins, forth.ties, forth.losses) == (back.losses, back.ties, back.wins)
+    assert forth.scenes == back.scenes[::-1]
+    assert np.isclose(forth.difference, -back.difference, equal_nan=True)
+
+
+def test_comparison_needs_the_same_runs():
+    """Matrices of different shapes cannot be paired."""
+    with pytest.raises(ValueError, match="cannot be paired"):
+        compare(np.ones((2, 2)), np.ones((2, 3)), 1.0, np.random.default_rng(0))
+
+
+def test_curve_ends_at_the_share_solved():
+    """Solved times in order; the shares count all runs."""
+    seconds, shares = solved_within(TIMES)
+    assert seconds.tolist() == [1.0, 2.0, 3.0, 5.0]
+    assert shares.tolist() == [0.2, 0.4, 0.6, 0.8]
