@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pcg.grid import BoolArray
 from pcg.level import TileArray
 from pcg.representation import KEEP, REPRESENTATIONS, IntArray, Representation
 from pcg.reward import Control, FloatArray, RewardSettings, distance, reward
@@ -29,7 +30,9 @@ class EpisodeSettings:
         thing_share: Chance of a cell to hold a player at the start; likewise a crate, a target.
         wall_spread: The chance of a wall is that of the middle of the wanted band, plus or minus up to this.
         reward: What is wanted.
-        max_states: Limit of the solver.
+        spare_crates: Maps with so many crates too many are solved too; else moving a crate, first writing the new one and
+            then removing the old one, would lose the solution in between.
+        max_states: Limit of the solver; a map that reaches it counts as unsolvable.
     """
 
     representation: str = "narrow"
@@ -40,7 +43,8 @@ class EpisodeSettings:
     thing_share: float = 0.01
     wall_spread: float = 0.05
     reward: RewardSettings = field(default_factory=RewardSettings)
-    max_states: int = 20_000
+    spare_crates: int = 1
+    max_states: int = 5_000
 
     def __post_init__(self) -> None:
         if self.representation not in REPRESENTATIONS:
@@ -108,9 +112,9 @@ class Transition:
     """
 
     reward: FloatArray
-    changed: np.ndarray[tuple[int], np.dtype[np.bool_]]
-    terminated: np.ndarray[tuple[int], np.dtype[np.bool_]]
-    truncated: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    changed: BoolArray
+    terminated: BoolArray
+    truncated: BoolArray
 
 
 class Episodes:
@@ -164,6 +168,12 @@ class Episodes:
         self._measure(episodes)
         self.distance[episodes] = distance(self.statistics[episodes], self.controls[episodes], self.settings.reward)
 
+    def is_valid(self) -> BoolArray:
+        """(n,) whether each map is a solvable level with the wanted numbers of crates and targets."""
+        s, wanted = self.statistics, self.settings.reward
+        counted = (s[:, Column.CRATES] == wanted.crates) & (s[:, Column.TARGETS] == wanted.targets)
+        return np.asarray(counted & (s[:, Column.SOLVABLE] == 1), dtype=np.bool_)
+
     def step(self, actions: IntArray) -> Transition:
         """Carries out one action in each episode."""
         cells, tiles = self._representation.step(actions)
@@ -189,6 +199,6 @@ class Episodes:
             self.statistics,
             self.cache,
             self._archive,
-            max_crates=self.settings.reward.crates,
+            max_crates=self.settings.reward.crates + self.settings.spare_crates,
             max_states=self.settings.max_states,
         )

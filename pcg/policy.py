@@ -249,7 +249,7 @@ def _beginning(rng: np.random.Generator, n: int, request: Request, settings: Epi
 def _attempt(episodes: Episodes, index: int, met: bool) -> Attempt:  # noqa: FBT001 - a field of the result
     statistics = episodes.statistics[index]
     level, rejection = None, None
-    if statistics[Column.SOLVABLE]:
+    if episodes.is_valid()[index]:
         row, column = divmod(int(statistics[Column.GOAL]), episodes.settings.columns)
         level = Level(episodes.maps[index], goal_crate=(row, column))
     else:

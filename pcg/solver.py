@@ -104,12 +104,14 @@ def solve(
     width = level.shape[1] + 2
     search = {Objective.PUSHES: kernel.fewest_pushes, Objective.MOVES: kernel.fewest_moves}[objective]
     outcome, states, path = search(
-        np.pad(level.is_wall, 1, constant_values=True).astype(np.uint8).ravel(),
-        width,
+        kernel.make_board(
+            np.pad(level.is_wall, 1, constant_values=True).astype(np.uint8).ravel(),
+            width,
+            np.array([_number(cell, width) for cell in level.targets], dtype=np.int32),
+        ),
         _number(player, width),
         np.array([_number(cell, width) for cell in level.crates], dtype=np.int16),
         0 if goal_crate is None else _number(goal_crate, width),
-        np.array([_number(cell, width) for cell in level.targets], dtype=np.int32),
         default_max_states(level) if max_states is None else max_states,
     )
     status = _STATUSES[outcome]

@@ -4,19 +4,23 @@ Boards are flat with a border of wall: inner cell (row, column) is number `(row 
 columns + 2`, so no step needs a bounds check. A state holds the cells of the crates in ascending order and that of the
 goal crate, 0 (a wall) where any crate will do.
 
-*Fewest pushes* is breadth-first over pushes. Two player positions in one region of free cells are one state: each state
-keeps its region as a bit set, and states that differ only in their regions are chained, so that a push back into a
-known region costs one look-up and no flood. *Fewest moves* is Dijkstra's algorithm (1959) over pushes with the walk
-before each as its cost; there the player's cell belongs to the state, and of solutions with as many moves one with the
-fewest pushes is found.
+*Fewest pushes* is A* (Hart, Nilsson, Raphael 1968) over pushes. Two player positions in one region of free cells are one
+state: each state keeps its region as a bit set, and states that differ only in their regions are chained, so that a
+push back into a known region costs one look-up and no flood. The bound is the *push distance* of a crate to a target,
+found by pulling a lone crate backwards from the target: that of the goal crate (of the nearest crate, if none is named)
+to the first target, or, where there are as many targets as crates, the sum over all crates to their nearest targets.
+One push lowers the bound by at most one, so a state that is expanded was reached in the fewest pushes. The queue is one
+stack for each value of f.
 
-*Live* cells of a target are those from which a lone crate can be pushed to it, found by pulling backwards from the
-target. A state is cut off when fewer live crates than targets remain, or when the goal crate has left the live cells
-of the first target: nothing else is pruned, so `UNSOLVABLE` is a proof.
+*Fewest moves* is Dijkstra's algorithm (1959) over pushes with the walk before each as its cost; there the player's cell
+belongs to the state, and of solutions with as many moves one with the fewest pushes is found.
+
+A state is cut off when fewer crates than targets have a push distance to any target, or when the goal crate (without
+one: every crate) has none to the first target. Nothing else is pruned, so `UNSOLVABLE` is a proof.
 """
 
 import heapq
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -29,18 +33,62 @@ WordArray = npt.NDArray[np.uint64]
 
 SOLVED, UNSOLVABLE, LIMIT = 0, 1, 2
 
-_FIRST_CAPACITY = 512
-_ALWAYS_BLOCKED = np.iinfo(np.int32).max
+NO_WAY = np.iinfo(np.int32).max
+"""Push distance of a cell from which no push leads to the target; also marks cells that are never walked on."""
+
+_FIRST_CAPACITY = 128
+
+
+class Board(NamedTuple):
+    """What never changes in a search.
+
+    Attributes:
+        wall: (cells,) flags.
+        width: Cells of a row, with border.
+        first_target: Cell of the first target.
+        n_targets: Targets.
+        is_target: (cells,) flags.
+        to_first: (cells,) push distances to the first target.
+        to_any: (cells,) push distances to the nearest target.
+    """
+
+    wall: ByteArray
+    width: int
+    first_target: int
+    n_targets: int
+    is_target: ByteArray
+    to_first: Int32Array
+    to_any: Int32Array
 
 
 @njit(cache=True)
-def live_cells(wall: ByteArray, width: int, targets: Int32Array) -> ByteArray:
-    """Flags of the cells from which a lone crate can be pushed to one of `targets`."""
-    live = np.zeros(wall.size, dtype=np.uint8)
+def make_board(wall: ByteArray, width: int, targets: Int32Array) -> Board:
+    """The board of a search.
+
+    Args:
+        wall: (cells,) flags, with the border.
+        width: Cells of a row.
+        targets: Cells of the targets, ascending, at least one.
+    """
+    is_target = np.zeros(wall.size, dtype=np.uint8)
+    for target in targets:
+        is_target[target] = 1
+    to_first = push_distances(wall, width, targets[:1])
+    to_any = to_first if targets.size == 1 else push_distances(wall, width, targets)
+    return Board(wall, width, targets[0], targets.size, is_target, to_first, to_any)
+
+
+@njit(cache=True)
+def push_distances(wall: ByteArray, width: int, targets: Int32Array) -> Int32Array:
+    """Pushes that bring a lone crate from each cell to the nearest target, `NO_WAY` if none do.
+
+    The player is taken to be wherever a push needs it.
+    """
+    distance = np.full(wall.size, NO_WAY, dtype=np.int32)
     queue = np.empty(wall.size, dtype=np.int32)
     end = 0
     for target in targets:
-        live[target] = 1
+        distance[target] = 0
         queue[end] = target
         end += 1
     begin = 0
@@ -49,11 +97,38 @@ def live_cells(wall: ByteArray, width: int, targets: Int32Array) -> ByteArray:
         begin += 1
         for step in (-1, -width, 1, width):
             before = cell - step
-            if not wall[before] and not live[before] and not wall[before - step]:
-                live[before] = 1
+            if not wall[before] and distance[before] == NO_WAY and not wall[before - step]:
+                distance[before] = distance[cell] + 1
                 queue[end] = before
                 end += 1
-    return live
+    return distance
+
+
+@njit(cache=True)
+def _bound(board: Board, crates: Int16Array, goal: int) -> int:
+    """Pushes that are needed at least, `NO_WAY` if the state is hopeless."""
+    to_first = NO_WAY
+    alive, total = 0, 0
+    for crate in crates:
+        to_first = min(to_first, board.to_first[crate])
+        if board.to_any[crate] != NO_WAY:
+            alive += 1
+            total += board.to_any[crate]
+    if goal != 0:
+        to_first = board.to_first[goal]
+    if alive < board.n_targets or to_first == NO_WAY:
+        return NO_WAY
+    return max(to_first, total) if crates.size == board.n_targets else to_first
+
+
+@njit(cache=True)
+def _is_solved(board: Board, crates: Int16Array, goal: int) -> bool:
+    if goal != 0 and goal != board.first_target:  # noqa: PLR1714 - tuples of two types of integers are not compiled
+        return False
+    covered = 0
+    for crate in crates:
+        covered += board.is_target[crate]
+    return covered == board.n_targets
 
 
 @njit(cache=True)
@@ -104,6 +179,20 @@ def _rehashed(table: Int32Array, states: Int16Array, goals: Int16Array, players:
 
 
 @njit(cache=True)
+def _grown(array: npt.NDArray[Any], capacity: int) -> npt.NDArray[Any]:
+    larger: npt.NDArray[Any] = np.empty(capacity, dtype=array.dtype)
+    larger[: array.size] = array
+    return larger
+
+
+@njit(cache=True)
+def _grown_rows(array: npt.NDArray[Any], capacity: int) -> npt.NDArray[Any]:
+    larger: npt.NDArray[Any] = np.empty((capacity, array.shape[1]), dtype=array.dtype)
+    larger[: array.shape[0]] = array
+    return larger
+
+
+@njit(cache=True)
 def _pushed(crates: Int16Array, index: int, beyond: int, out: Int16Array) -> None:
     """Writes `crates` with number `index` on the cell `beyond`, in ascending order again."""
     out[:] = crates
@@ -117,31 +206,23 @@ def _pushed(crates: Int16Array, index: int, beyond: int, out: Int16Array) -> Non
 
 
 @njit(cache=True)
-def _is_hopeless(crates: Int16Array, goal: int, live: ByteArray, live_first: ByteArray, n_targets: int) -> bool:
-    if goal != 0 and not live_first[goal]:
-        return True
-    alive = 0
-    for crate in crates:
-        alive += live[crate]
-    return alive < n_targets
+def _fresh_marks(wall: ByteArray) -> Int32Array:
+    mark = np.zeros(wall.size, dtype=np.int32)
+    for cell in range(wall.size):
+        if wall[cell]:
+            mark[cell] = NO_WAY
+    return mark
 
 
 @njit(cache=True)
-def _is_solved(crates: Int16Array, goal: int, is_target: ByteArray, first_target: int, n_targets: int) -> bool:
-    if goal != 0 and goal != first_target:  # noqa: PLR1714 - a tuple of two integer types is not compiled
-        return False
-    covered = 0
-    for crate in crates:
-        covered += is_target[crate]
-    return covered == n_targets
-
-
-@njit(cache=True)
-def _flood(player: int, crates: Int16Array, width: int, mark: Int32Array, stamp: int, queue: Int32Array) -> int:
-    """Marks the cells that the player can walk to with `stamp` and lists them in `queue`; returns their number.
+def _write_region(
+    region: WordArray, player: int, crates: Int16Array, width: int, mark: Int32Array, stamp: int, queue: Int32Array
+) -> None:
+    """Writes the bits of the cells that the player can walk to.
 
     `mark` holds earlier stamps on free cells and more than any stamp on walls.
     """
+    region[:] = 0
     for crate in crates:
         mark[crate] = stamp
     mark[player] = stamp
@@ -150,21 +231,18 @@ def _flood(player: int, crates: Int16Array, width: int, mark: Int32Array, stamp:
     while begin < end:
         cell = queue[begin]
         begin += 1
+        region[cell >> 6] |= np.uint64(1) << np.uint64(cell & 63)
         for step in (-1, -width, 1, width):
             if mark[cell + step] < stamp:
                 mark[cell + step] = stamp
                 queue[end] = cell + step
                 end += 1
-    return end
 
 
 @njit(cache=True)
-def _fresh_marks(wall: ByteArray) -> Int32Array:
-    mark = np.zeros(wall.size, dtype=np.int32)
-    for cell in range(wall.size):
-        if wall[cell]:
-            mark[cell] = _ALWAYS_BLOCKED
-    return mark
+def _holds(region: WordArray, cell: int) -> np.bool_:
+    is_set: np.bool_ = (region[cell >> 6] >> np.uint64(cell & 63)) & np.uint64(1) != np.uint64(0)
+    return is_set
 
 
 @njit(cache=True)
@@ -184,130 +262,128 @@ def _path(parents: Int32Array, pushed: Int16Array, steps: Int16Array, index: int
 
 
 @njit(cache=True)
-def _grown(array: npt.NDArray[Any], capacity: int) -> npt.NDArray[Any]:
-    larger: npt.NDArray[Any] = np.empty(capacity, dtype=array.dtype)
-    larger[: array.size] = array
-    return larger
-
-
-@njit(cache=True)
-def _grown_rows(array: npt.NDArray[Any], capacity: int) -> npt.NDArray[Any]:
-    larger: npt.NDArray[Any] = np.empty((capacity, array.shape[1]), dtype=array.dtype)
-    larger[: array.shape[0]] = array
-    return larger
-
-
-@njit(cache=True)
 def fewest_pushes(  # noqa: C901, PLR0912, PLR0915 - one compiled loop over arrays that it alone grows
-    wall: ByteArray, width: int, player: int, crates: Int16Array, goal: int, targets: Int32Array, max_states: int
+    board: Board, player: int, crates: Int16Array, goal: int, max_states: int
 ) -> tuple[int, int, Int32Array]:
-    """Breadth-first search over pushes.
+    """A* over pushes.
 
     Args:
-        wall: (cells,) flags of the bordered board.
-        width: Cells of one of its rows.
+        board: What never changes.
         player: Cell of the player.
         crates: Cells of the crates, ascending.
         goal: Cell of the crate that has to reach the first target, 0 if any may.
-        targets: Cells of the targets, ascending, at least one.
         max_states: States to visit at most.
 
     Returns:
         Status, the number of states, and the (n, 2) pushes of a solution: crate cell and step.
     """
-    n, n_targets, first_target = crates.size, targets.size, targets[0]
-    words = (wall.size + 63) >> 6
-    live, live_first = live_cells(wall, width, targets), live_cells(wall, width, targets[:1])
-    is_target = np.zeros(wall.size, dtype=np.uint8)
-    for target in targets:
-        is_target[target] = 1
+    n, width, wall = crates.size, board.width, board.wall
     nothing = np.empty((0, 2), dtype=np.int32)
-    if _is_solved(crates, goal, is_target, first_target, n_targets):
-        return SOLVED, 1, nothing
-    if _is_hopeless(crates, goal, live, live_first, n_targets):
+    f = _bound(board, crates, goal)
+    if f == NO_WAY:
         return UNSOLVABLE, 1, nothing
 
-    capacity = _FIRST_CAPACITY
+    capacity, entry_capacity = _FIRST_CAPACITY, _FIRST_CAPACITY
     states = np.empty((capacity, n), dtype=np.int16)
     goals = np.empty(capacity, dtype=np.int16)
     players = np.zeros(capacity, dtype=np.int16)  # the region stands for the player: all zero
-    regions = np.zeros((capacity, words), dtype=np.uint64)
+    regions = np.empty((capacity, (wall.size + 63) >> 6), dtype=np.uint64)
     parents = np.empty(capacity, dtype=np.int32)
     pushed = np.empty(capacity, dtype=np.int16)
     steps = np.empty(capacity, dtype=np.int16)
+    costs = np.empty(capacity, dtype=np.int32)
     chain = np.empty(capacity, dtype=np.int32)
     table = np.full(4 * capacity, -1, dtype=np.int32)
+    # An entry of the queue: a state, the cost that it had then, the entry below in its stack.
+    entries = np.empty((entry_capacity, 3), dtype=np.int32)
+    stacks = np.full(f + 64, -1, dtype=np.int32)
     mark, queue = _fresh_marks(wall), np.empty(wall.size, dtype=np.int32)
     occupied = np.zeros(wall.size, dtype=np.uint8)
     moved = np.empty(n, dtype=np.int16)
 
-    states[0], goals[0], parents[0], chain[0] = crates, goal, -1, -1
+    states[0], goals[0], parents[0], costs[0], chain[0] = crates, goal, -1, 0, -1
     table[_slot(table, states, goals, players, states[0], goal, 0)] = 0
-    for k in range(_flood(player, crates, width, mark, 1, queue)):
-        cell = queue[k]
-        regions[0, cell >> 6] |= np.uint64(1) << np.uint64(cell & 63)
-    count, index = 1, 0
-    while index < count:
+    _write_region(regions[0], player, crates, width, mark, 1, queue)
+    entries[0, 0], entries[0, 1], entries[0, 2] = 0, 0, -1
+    stacks[f] = 0
+    count, n_entries, waiting = 1, 1, 1
+    while waiting > 0:
+        if stacks[f] < 0:
+            f += 1
+            continue
+        entry = stacks[f]
+        index, cost, stacks[f] = entries[entry, 0], entries[entry, 1], entries[entry, 2]
+        waiting -= 1
+        if cost > costs[index]:
+            continue
+        if _is_solved(board, states[index], goals[index]):
+            return SOLVED, count, _path(parents, pushed, steps, index)
         for k in range(n):
             occupied[states[index, k]] = 1
         for step in (-1, -width, 1, width):
             for k in range(n):
                 crate = states[index, k]
-                stand, beyond = crate - step, crate + step
-                if wall[beyond] or occupied[beyond]:
-                    continue
-                if not (regions[index, stand >> 6] >> np.uint64(stand & 63)) & np.uint64(1):
+                beyond = crate + step
+                if wall[beyond] or occupied[beyond] or not _holds(regions[index], crate - step):
                     continue
                 _pushed(states[index], k, beyond, moved)
                 goal = beyond if crate == goals[index] else goals[index]
-                if _is_hopeless(moved, goal, live, live_first, n_targets):
+                bound = _bound(board, moved, goal)
+                if bound == NO_WAY:
                     continue
                 slot = _slot(table, states, goals, players, moved, goal, 0)
                 head = table[slot]
-                met = head
-                while met >= 0 and not (regions[met, crate >> 6] >> np.uint64(crate & 63)) & np.uint64(1):
-                    met = chain[met]
-                if met >= 0:
+                known = head
+                while known >= 0 and not _holds(regions[known], crate):
+                    known = chain[known]
+                if known < 0:
+                    if count >= max_states:
+                        return LIMIT, count, nothing
+                    if count == capacity:
+                        capacity *= 2
+                        states, regions = _grown_rows(states, capacity), _grown_rows(regions, capacity)
+                        goals, players = _grown(goals, capacity), np.zeros(capacity, dtype=np.int16)
+                        parents, chain, costs = (
+                            _grown(parents, capacity),
+                            _grown(chain, capacity),
+                            _grown(costs, capacity),
+                        )
+                        pushed, steps = _grown(pushed, capacity), _grown(steps, capacity)
+                        table = _rehashed(table, states, goals, players)
+                        slot = _slot(table, states, goals, players, moved, goal, 0)
+                    known = count
+                    states[known], goals[known] = moved, goal
+                    if head < 0:
+                        table[slot], chain[known] = known, -1
+                    else:
+                        chain[known], chain[head] = chain[head], known
+                    _write_region(regions[known], crate, moved, width, mark, count + 1, queue)
+                    count += 1
+                elif costs[known] <= cost + 1:
                     continue
-                solved = _is_solved(moved, goal, is_target, first_target, n_targets)
-                if not solved and count >= max_states:
-                    return LIMIT, count, nothing
-                if count == capacity:
-                    capacity *= 2
-                    states, goals, players = (
-                        _grown_rows(states, capacity),
-                        _grown(goals, capacity),
-                        np.zeros(capacity, dtype=np.int16),
-                    )
-                    regions = _grown_rows(regions, capacity)
-                    regions[count:] = 0
-                    parents, chain = _grown(parents, capacity), _grown(chain, capacity)
-                    pushed, steps = _grown(pushed, capacity), _grown(steps, capacity)
-                    table = _rehashed(table, states, goals, players)
-                    slot = _slot(table, states, goals, players, moved, goal, 0)
-                states[count], goals[count], parents[count] = moved, goal, index
-                pushed[count], steps[count] = crate, step
-                if solved:
-                    return SOLVED, count + 1, _path(parents, pushed, steps, count)
-                if head < 0:
-                    table[slot], chain[count] = count, -1
-                else:
-                    chain[count], chain[head] = chain[head], count
-                for q in range(_flood(crate, moved, width, mark, count + 1, queue)):
-                    cell = queue[q]
-                    regions[count, cell >> 6] |= np.uint64(1) << np.uint64(cell & 63)
-                count += 1
+                costs[known], parents[known], pushed[known], steps[known] = cost + 1, index, crate, step
+                if n_entries == entry_capacity:
+                    entry_capacity *= 2
+                    entries = _grown_rows(entries, entry_capacity)
+                stack = cost + 1 + bound
+                if stack >= stacks.size:
+                    filled = stacks.size
+                    stacks = _grown(stacks, 2 * stack)
+                    stacks[filled:] = -1
+                entries[n_entries, 0], entries[n_entries, 1], entries[n_entries, 2] = known, cost + 1, stacks[stack]
+                stacks[stack] = n_entries
+                n_entries += 1
+                waiting += 1
         for k in range(n):
             occupied[states[index, k]] = 0
-        index += 1
     return UNSOLVABLE, count, nothing
 
 
 @njit(cache=True)
-def _walk_lengths(
+def _write_walk_lengths(
     player: int, crates: Int16Array, wall: ByteArray, width: int, length: Int32Array, queue: Int32Array
 ) -> None:
-    """Writes the steps of a shortest walk to each cell, -1 where none leads."""
+    """Writes the steps of a shortest walk to each cell, -1 where none leads, -2 on crates."""
     length[:] = -1
     for crate in crates:
         length[crate] = -2
@@ -325,19 +401,13 @@ def _walk_lengths(
 
 
 @njit(cache=True)
-def fewest_moves(  # noqa: C901, PLR0912, PLR0915 - one compiled loop over arrays that it alone grows
-    wall: ByteArray, width: int, player: int, crates: Int16Array, goal: int, targets: Int32Array, max_states: int
+def fewest_moves(  # noqa: C901, PLR0915 - as above
+    board: Board, player: int, crates: Int16Array, goal: int, max_states: int
 ) -> tuple[int, int, Int32Array]:
-    """Dijkstra's algorithm over pushes with the walks between them as cost; arguments and result as `fewest_pushes`."""
-    n, n_targets, first_target = crates.size, targets.size, targets[0]
-    live, live_first = live_cells(wall, width, targets), live_cells(wall, width, targets[:1])
-    is_target = np.zeros(wall.size, dtype=np.uint8)
-    for target in targets:
-        is_target[target] = 1
+    """Dijkstra's algorithm over pushes with the walks before them as cost; arguments and result as `fewest_pushes`."""
+    n, width, wall = crates.size, board.width, board.wall
     nothing = np.empty((0, 2), dtype=np.int32)
-    if _is_solved(crates, goal, is_target, first_target, n_targets):
-        return SOLVED, 1, nothing
-    if _is_hopeless(crates, goal, live, live_first, n_targets):
+    if _bound(board, crates, goal) == NO_WAY:
         return UNSOLVABLE, 1, nothing
 
     capacity = _FIRST_CAPACITY
@@ -352,7 +422,7 @@ def fewest_moves(  # noqa: C901, PLR0912, PLR0915 - one compiled loop over array
     length, queue = np.empty(wall.size, dtype=np.int32), np.empty(wall.size, dtype=np.int32)
     moved = np.empty(n, dtype=np.int16)
 
-    # Cost: moves in the upper half, pushes in the lower, so that fewer moves come first and then fewer pushes.
+    # Moves in the upper half of a cost, pushes in the lower: fewer moves come first, then fewer pushes.
     move_cost = np.int64(1) << 32
     states[0], goals[0], players[0], costs[0], parents[0] = crates, goal, player, 0, -1
     table[_slot(table, states, goals, players, states[0], goal, player)] = 0
@@ -362,20 +432,21 @@ def fewest_moves(  # noqa: C901, PLR0912, PLR0915 - one compiled loop over array
         cost, index = heapq.heappop(heap)
         if cost > costs[index]:
             continue
-        if _is_solved(states[index], goals[index], is_target, first_target, n_targets):
+        if _is_solved(board, states[index], goals[index]):
             return SOLVED, count, _path(parents, pushed, steps, index)
-        _walk_lengths(players[index], states[index], wall, width, length, queue)
+        _write_walk_lengths(players[index], states[index], wall, width, length, queue)
         for step in (-1, -width, 1, width):
             for k in range(n):
                 crate = states[index, k]
-                stand, beyond = crate - step, crate + step
-                if wall[beyond] or length[beyond] == -2 or length[stand] < 0:
+                beyond = crate + step
+                walk = length[crate - step]
+                if wall[beyond] or length[beyond] == -2 or walk < 0:
                     continue
                 _pushed(states[index], k, beyond, moved)
                 goal = beyond if crate == goals[index] else goals[index]
-                if _is_hopeless(moved, goal, live, live_first, n_targets):
+                if _bound(board, moved, goal) == NO_WAY:
                     continue
-                reached = cost + (length[stand] + 1) * move_cost + 1
+                reached = cost + (walk + 1) * move_cost + 1
                 slot = _slot(table, states, goals, players, moved, goal, crate)
                 known = table[slot]
                 if known >= 0 and costs[known] <= reached:

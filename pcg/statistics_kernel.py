@@ -17,7 +17,7 @@ import numpy.typing as npt
 from numba import njit
 
 from pcg.level import Tile, TileArray
-from pcg.solver_kernel import SOLVED, ByteArray, Int32Array, WordArray, fewest_pushes
+from pcg.solver_kernel import SOLVED, ByteArray, Int32Array, WordArray, fewest_pushes, make_board
 
 IntArray = npt.NDArray[np.int64]
 
@@ -195,7 +195,7 @@ def _look_up(
         counters[_HITS] += 1
     else:
         keys[slot, 0], keys[slot, 1] = low, high
-        verdicts[slot] = _verdict(board, width, row[_CRATES], row[_TARGETS], max_states)
+        verdicts[slot] = _verdict(board, width, max_states)
     row[_SOLVABLE], row[_PUSHES], row[_GOAL], row[_DEPENDENCY] = (
         verdicts[slot, 0],
         verdicts[slot, 1],
@@ -234,36 +234,29 @@ def _key(board: ByteArray, width: int, unvisited: ByteArray, queue: Int32Array) 
 
 
 @njit(cache=True)
-def _verdict(board: ByteArray, width: int, n_crates: int, n_targets: int, max_states: int) -> tuple[int, int, int, int]:
+def _verdict(board: ByteArray, width: int, max_states: int) -> tuple[int, int, int, int]:
     """Solvable, pushes, goal crate (inner cell number), dependency."""
-    columns = width - 2
-    wall = np.zeros(board.size, dtype=np.uint8)
-    crates, targets = np.empty(n_crates, dtype=np.int16), np.empty(n_targets, dtype=np.int32)
-    player, crate_count, target_count = 0, 0, 0
-    for cell in range(board.size):
-        if board[cell] == WALL:
-            wall[cell] = 1
-        elif board[cell] == PLAYER:
-            player = cell
-        elif board[cell] == CRATE:
-            crates[crate_count] = cell
-            crate_count += 1
-        elif board[cell] == TARGET:
-            targets[target_count] = cell
-            target_count += 1
-    status, _, path = fewest_pushes(wall, width, player, crates, 0, targets, max_states)
+    wall = (board == WALL).astype(np.uint8)
+    player = np.flatnonzero(board == PLAYER)[0]
+    crates = np.flatnonzero(board == CRATE).astype(np.int16)
+    targets = np.flatnonzero(board == TARGET).astype(np.int32)
+    status, _, path = fewest_pushes(make_board(wall, width, targets), player, crates, 0, max_states)
     if status != SOLVED:
         return 0, 0, -1, 0
-    goal = targets[0]
+    goal, own_pushes = targets[0], 0
     for k in range(len(path) - 1, -1, -1):
         if path[k, 0] + path[k, 1] == goal:
             goal = path[k, 0]
+            own_pushes += 1
+    number = (goal // width - 1) * (width - 2) + goal % width - 1
+    if own_pushes == len(path):
+        # No other crate moves, so they might as well be walls.
+        return 1, len(path), number, 0
     for crate in crates:
         wall[crate] = crate != goal
     alone = np.empty(1, dtype=np.int16)
     alone[0] = goal
-    status, _, _ = fewest_pushes(wall, width, player, alone, 0, targets[:1], max_states)
-    number = (goal // width - 1) * columns + goal % width - 1
+    status, _, _ = fewest_pushes(make_board(wall, width, targets[:1]), player, alone, 0, max_states)
     return 1, len(path), number, int(status != SOLVED)
 
 

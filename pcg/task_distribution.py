@@ -30,7 +30,7 @@ class TaskDistribution:
 
     wall_density: tuple[float, float] = (0.05, 0.27)
     wall_width: tuple[float, float] = (0.03, 0.1)
-    pushes: tuple[int, int] = (3, 20)
+    pushes: tuple[int, int] = (3, 18)
     push_width: tuple[int, int] = (2, 6)
     open_share: float = 0.5
     occluded_share: float = 0.15

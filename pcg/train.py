@@ -71,7 +71,7 @@ class TrainingSettings:
     tasks: TaskDistribution = field(default_factory=TaskDistribution)
     n_envs: int = 64
     n_steps: int = 256
-    batch_size: int = 2048
+    batch_size: int = 512
     n_epochs: int = 4
     learning_rate: float = 5e-4
     entropy: float = 0.01
@@ -90,8 +90,9 @@ class EpisodeTally:
     def add(self, episodes: Episodes, ended: IntArray, success: BoolArray, returns: FloatArray) -> None:
         """Counts the episodes with the numbers `ended`."""
         s = episodes.statistics[ended]
-        columns = (Column.SOLVABLE, Column.PUSHES, Column.OCCLUDED, Column.DEPENDENCY)
-        found = [success[ended], *(s[:, column] for column in columns), returns[ended], episodes.steps[ended]]
+        valid = episodes.is_valid()[ended]
+        of_level = (s[:, column] * valid for column in (Column.PUSHES, Column.OCCLUDED, Column.DEPENDENCY))
+        found = [success[ended], valid, *of_level, returns[ended], episodes.steps[ended]]
         self._parts.append(np.array(found, dtype=np.float64))
 
     def means(self) -> dict[str, Any]:
