@@ -28,6 +28,10 @@ FINEST_STEP = 0.25
 """Vertices of a line closer than this to the one before [px] are left out."""
 
 
+FULL_SLACK = 1e-9
+"""A share of a pixel this close to 1 is the whole pixel."""
+
+
 class _Window(NamedTuple):
     """A rectangle of pixels: where it is in the image, and the world coordinates [m] of its pixels' centres."""
 
@@ -69,22 +73,64 @@ def require_paintable(width_px: int, height_px: int) -> None:
 
 def _paint_shape(image: Image, drawing: Drawing, shape: Shape) -> None:
     """Shares the pixels on the border between fill and outline, without letting the ground shine through."""
+    if _is_plain_box(shape):
+        _paint_box(image, drawing, shape)
+        return
     pixel, width = _pixel(image, drawing), shape.outline_width
     window = _window(image, drawing, extent(shape.parts), width + pixel)
     inside, around = np.zeros((2, len(window.y), len(window.x)))
     for part in shape.parts:
         near = _window(image, drawing, extent((part,)), width)
         place = _place(near, window)
-        if width == 0 and part.radius == 0 and _is_upright_box(part.core):
-            inside[place] = np.minimum(inside[place] + _box_coverage(part.core, near, pixel), 1.0)
-            continue
         distance = _distance(part, near)
         # Parts that touch along an edge cover half of its pixels each: their sum leaves no seam. Their outlines
         # overlap there, and the larger one counts.
         inside[place] = np.minimum(inside[place] + _coverage(distance, pixel), 1.0)
-        around[place] = np.maximum(around[place], _coverage(distance - width, pixel))
-    outline = np.maximum(around - inside, 0.0) if width > 0 else np.zeros_like(inside)
-    _blend(image[window.rows, window.columns], [(shape.fill, inside * shape.fill_opacity), (shape.outline, outline)])
+        if width > 0:
+            around[place] = np.maximum(around[place], _coverage(distance - width, pixel))
+    np.maximum(np.subtract(around, inside, out=around), 0.0, out=around)
+    inside *= shape.fill_opacity
+    _blend(image[window.rows, window.columns], [(shape.fill, inside), (shape.outline, around)])
+
+
+def _is_plain_box(shape: Shape) -> bool:
+    """Whether a shape is one upright box with sharp corners and without an outline, as a floor is."""
+    (part, *others) = shape.parts
+    return not others and part.radius == 0 and shape.outline_width == 0 and _is_upright_box(part.core)
+
+
+def _paint_box(image: Image, drawing: Drawing, shape: Shape) -> None:
+    """A plain box: each pixel's share is the product of those of its row and of its column."""
+    pixel, core = _pixel(image, drawing), shape.parts[0].core
+    window = _window(image, drawing, extent(shape.parts), pixel)
+    pixels = image[window.rows, window.columns]
+    x, y = (_shares(centers, core[:, axis], pixel) for axis, centers in enumerate((window.x, window.y)))
+    rows, columns = _full(y), _full(x)
+    if shape.fill_opacity >= 1:
+        pixels[rows, columns] = _bytes(shape.fill)
+    else:
+        rows = slice(0, 0)
+    # What is left is a frame of few pixels: above, below, and on both sides.
+    for r, c in (
+        (slice(0, rows.start), slice(None)),
+        (slice(rows.stop, None), slice(None)),
+        (rows, slice(0, columns.start)),
+        (rows, slice(columns.stop, None)),
+    ):
+        _blend(pixels[r, c], [(shape.fill, np.outer(y[r], x[c]) * shape.fill_opacity)])
+
+
+def _shares(centers: FloatArray, ends: FloatArray, pixel: float) -> FloatArray:
+    """(n,): how much of each row or column of pixels lies between the least and the greatest of `ends` [m]."""
+    common = np.minimum(centers + pixel / 2, ends.max()) - np.maximum(centers - pixel / 2, ends.min())
+    shares: FloatArray = np.clip(common / pixel, 0.0, 1.0)
+    return shares
+
+
+def _full(shares: FloatArray) -> slice:
+    """The rows or columns that are covered from side to side."""
+    found = np.flatnonzero(shares >= 1 - FULL_SLACK)
+    return slice(int(found[0]), int(found[-1]) + 1) if len(found) else slice(0, 0)
 
 
 def _paint_line(image: Image, drawing: Drawing, line: Line) -> None:
@@ -229,26 +275,14 @@ def _coverage(distance: FloatArray, pixel: float) -> FloatArray:
     return share
 
 
-def _box_coverage(core: FloatArray, window: _Window, pixel: float) -> FloatArray:
-    """Share of each pixel that an upright box covers: the product of those of its column and of its row."""
-    lower, upper = core.min(axis=0), core.max(axis=0)
-    shares = []
-    for axis, centers in enumerate((window.x, window.y)):
-        ends = np.minimum(centers + pixel / 2, upper[axis]) - np.maximum(centers - pixel / 2, lower[axis])
-        shares.append(np.clip(ends / pixel, 0.0, 1.0))
-    covered: FloatArray = np.outer(shares[1], shares[0])
-    return covered
-
-
 def _blend(pixels: Image, layers: list[tuple[Color, FloatArray]]) -> None:
     """Mixes colours into `pixels` (h, w, 3), each with its (h, w) weights; the weights add up to at most 1."""
     mixed = np.zeros(pixels.shape[:2], dtype=np.bool_)
     for color, weights in layers:
-        mixed |= weights > 0
         # Most pixels lie inside of a shape: they take its colour as it is.
         full = weights >= 1
         pixels[full] = _bytes(color)
-        mixed &= ~full
+        mixed |= (weights > 0) ^ full
     edge = np.nonzero(mixed)
     ground = 1.0 - np.sum([weights[edge] for _, weights in layers], axis=0)
     values = pixels[edge] * ground[:, np.newaxis]

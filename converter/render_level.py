@@ -1,11 +1,11 @@
 """Pictures of levels: one square tile a cell, the outer wall included."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 
 import numpy as np
 
-from converter.drawing import Drawing, Inset, Item, Rounded, Shape, box, disc
+from converter.drawing import Drawing, Inset, Item, Shape, box, disc
 from converter.raster import Image, paint, require_paintable
 from converter.theme import PAPER, Color, Theme, mixed
 from pcg.errors import InputError
@@ -43,18 +43,8 @@ def level_drawing(level: Level, *, theme: Theme = PAPER) -> Drawing:
         for row in range(rows)
         for column in range(columns)
     ]
-    # One shape below all walls, so that no gap shows between tiles where a program smooths their edges.
-    ground = Shape(tuple(_wall_runs(kinds)), theme.wall_dark)
-    return Drawing(np.zeros(2), np.array([float(columns), float(rows)]), theme.floor_line, (ground, *insets))
-
-
-def _wall_runs(kinds: TileArray) -> Iterator[Rounded]:
-    """The walls of each row, neighbours as one box."""
-    rows = len(kinds)
-    for row in range(rows):
-        change = np.diff((kinds[row] == Tile.WALL).astype(int), prepend=0, append=0)
-        for first, end in zip(np.flatnonzero(change == 1), np.flatnonzero(change == -1), strict=True):
-            yield box(((first + end) / 2, rows - 0.5 - row), (float(end - first), 1.0))
+    # Where a program smooths the edges of tiles, what is below them shows between walls.
+    return Drawing(np.zeros(2), np.array([float(columns), float(rows)]), theme.wall_dark, tuple(insets))
 
 
 def tile_kinds(level: Level) -> TileArray:
@@ -84,7 +74,12 @@ def tile_drawings(theme: Theme) -> Mapping[int, Drawing]:
         GOAL_CRATE: [*floor, *goal_crate],
         GOAL_CRATE_ON_TARGET: [*target, *goal_crate],
     }
-    return {kind: Drawing(np.zeros(2), np.ones(2), theme.floor_line, tuple(items[kind])) for kind in items}
+    return {
+        kind: Drawing(
+            np.zeros(2), np.ones(2), theme.wall_dark if kind == Tile.WALL else theme.floor_line, tuple(items[kind])
+        )
+        for kind in items
+    }
 
 
 def _floor(theme: Theme) -> list[Item]:
@@ -92,9 +87,8 @@ def _floor(theme: Theme) -> list[Item]:
 
 
 def _wall(theme: Theme) -> list[Item]:
-    """A block lit from the upper left."""
+    """A block lit from the upper left; its shaded edges are the tile's background."""
     return [
-        Shape((box(_CENTER, (1.0, 1.0)),), theme.wall_dark),
         Shape((box((0.48, 0.52), (0.94, 0.94), 0.06),), theme.wall_light),
         Shape((box((0.5, 0.5), (0.88, 0.88), 0.06),), theme.wall),
     ]

@@ -74,6 +74,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print exactly one JSON docum
 Out = Annotated[Path, typer.Option(metavar="DIR", help="Folder for the results; made if missing.")]
 Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of all random choices.")]
 Scenes = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scene files (.yaml, .g).")]
+Still = Annotated[str, typer.Option("--format", metavar="NAME", help="png or svg.")]
 Theme = Annotated[str, typer.Option(metavar="NAME", help="Colours: paper or colorblind.")]
 Preset = Annotated[
     str | None,
@@ -494,6 +495,8 @@ def subgoals(
     method: Annotated[str, typer.Option(metavar="NAME", help="A method of the forward search.")] = "Rnd+FPR",
     seed: Seed = 0,
     settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",
+    format_: Still = "png",
+    theme: Theme = "paper",
     json: Json = False,
 ) -> None:
     """Draw the subgoals that a method proposes for an object at the start, before and after the filter.
@@ -503,7 +506,11 @@ def subgoals(
     from evaluate.commands.subgoals import run
     from planner import settings_for
 
-    _exit(run(scene, out, settings_for(settings, method=method), seed, object_, as_json=json))
+    _exit(
+        run(
+            scene, out, settings_for(settings, method=method), seed, object_, format_=format_, theme=theme, as_json=json
+        )
+    )
 
 
 @app.command(short_help="Draw the search tree of a method.")
@@ -515,6 +522,8 @@ def tree(
     seed: Seed = 0,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9)] = 60.0,
     settings: Annotated[str, typer.Option(metavar="NAME", help="Settings of the planner: fast or faithful.")] = "fast",
+    format_: Still = "png",
+    theme: Theme = "paper",
     json: Json = False,
 ) -> None:
     """Plan as `solve` does and draw the search tree. Exit status 1 if the scene is not solved.
@@ -524,7 +533,8 @@ def tree(
     from evaluate.commands.tree import run
     from planner import settings_for
 
-    _exit(run(scene, out, settings_for(settings, method=method, time_limit=time_limit), seed, as_json=json))
+    of_planner = settings_for(settings, method=method, time_limit=time_limit)
+    _exit(run(scene, out, of_planner, seed, format_=format_, theme=theme, as_json=json))
 
 
 @app.command(short_help="Solve many scenes with many methods and seeds.")

@@ -14,6 +14,7 @@ from converter.svg import write_svg
 from converter.theme import theme_named
 from converter.video import write_mp4
 from converter.viewer_page import plan_payload, write_viewer
+from evaluate.inputs import require_choice
 from evaluate.subjects import Motion, Subject
 from evaluate.workers import Failure, Job, WorkerStartError, run_tasks
 from pcg.errors import InputError
@@ -68,6 +69,27 @@ class Picture:
     def format(self) -> str:
         """One of `FORMATS`."""
         return self.file.suffix.removeprefix(".")
+
+
+def require_still(format_: str) -> None:
+    """Refuses formats that are not for still pictures.
+
+    Raises:
+        InputError: naming the allowed ones.
+    """
+    require_choice("--format", format_, STILL)
+
+
+def write_drawing(file: Path, drawing: Drawing, width_px: int, title: str) -> None:
+    """Writes a drawing as PNG or, with its title, as SVG; as the suffix of `file` says.
+
+    Raises:
+        InputError: the picture would be too large, or the file cannot be written.
+    """
+    if file.suffix == ".svg":
+        write_svg(file, drawing, width_px, title=title)
+    else:
+        write_png(file, paint(drawing, width_px))
 
 
 def write_picture(picture: Picture) -> None:
@@ -159,14 +181,10 @@ def _heading(subjects: Sequence[Subject], good: int) -> str:
     return f"{len(subjects)} {kind}, {good} {praise}"
 
 
-def _png(picture: Picture) -> None:
-    write_png(picture.file, paint(*_drawing(picture)))
-
-
-def _svg(picture: Picture) -> None:
+def _still(picture: Picture) -> None:
     subject = picture.subjects[0]
     title = "contact sheet" if picture.is_sheet else f"{subject.kind} {subject.name}"
-    write_svg(picture.file, *_drawing(picture), title=title)
+    write_drawing(picture.file, *_drawing(picture), title)
 
 
 def _motion_of(subject: Subject) -> Motion:
@@ -195,4 +213,4 @@ def _html(picture: Picture) -> None:
     write_viewer(picture.file, motions[0].scene.name, [plan_payload(*motion, theme=theme) for motion in motions])
 
 
-_WRITERS: dict[str, Callable[[Picture], None]] = {"png": _png, "svg": _svg, "gif": _gif, "mp4": _mp4, "html": _html}
+_WRITERS: dict[str, Callable[[Picture], None]] = {"png": _still, "svg": _still, "gif": _gif, "mp4": _mp4, "html": _html}

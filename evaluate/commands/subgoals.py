@@ -5,18 +5,22 @@ from pathlib import Path
 
 import numpy as np
 
-from converter.image_file import write_png
-from converter.render_subgoals import draw_subgoals
+from converter.render_subgoals import subgoals_drawing
 from converter.scene import Scene
+from converter.theme import theme_named
 from evaluate.inputs import read_scene_file, require_choice, require_writable
 from evaluate.names import safe_name
 from evaluate.output import print_json, print_line
+from evaluate.picture_files import require_still, write_drawing
 from evaluate.trial import require_plannable
 from pcg.errors import InputError
 from planner import Settings
 from planner.problem import Problem
 from planner.subgoals import GENERATORS, Proposal, propose_subgoals
 from planner.subproblems import subproblem_solvers
+
+WIDTH_PX = 1200
+"""Width of the picture."""
 
 
 def proposal_at_start(scene: Scene, settings: Settings, name: str, seed: int) -> Proposal:
@@ -39,15 +43,28 @@ def proposal_at_start(scene: Scene, settings: Settings, name: str, seed: int) ->
     )
 
 
-def run(path: Path, out: Path, settings: Settings, seed: int, object_: str | None, *, as_json: bool) -> bool:
+def run(
+    path: Path,
+    out: Path,
+    settings: Settings,
+    seed: int,
+    object_: str | None,
+    *,
+    format_: str,
+    theme: str,
+    as_json: bool,
+) -> bool:
     """Runs the command; see `evaluate.cli.subgoals`."""
+    require_still(format_)
+    colors = theme_named(theme)
     scene = read_scene_file(path)
     require_plannable(scene, settings, str(path))
     name = scene.goal.object if object_ is None else object_
     proposal = proposal_at_start(scene, settings, name, seed)
     require_writable(out)
-    file = out / f"{safe_name(scene.name)}-{safe_name(settings.method)}-{safe_name(name)}-{seed}.png"
-    write_png(file, draw_subgoals(scene, proposal.candidates, proposal.scores, proposal.passed, proposal.drawn))
+    file = out / f"{safe_name(scene.name)}-{safe_name(settings.method)}-{safe_name(name)}-{seed}.{format_}"
+    found = (proposal.candidates, proposal.scores, proposal.passed, proposal.drawn)
+    write_drawing(file, subgoals_drawing(scene, *found, theme=colors), WIDTH_PX, f"subgoals of {name} in {scene.name}")
     if as_json:
         print_json(
             {

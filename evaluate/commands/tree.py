@@ -4,11 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from converter.image_file import write_png
-from converter.render_tree import Mark, TreeNode, draw_tree
+from converter.render_tree import Mark, TreeNode, tree_drawing, tree_width_px
+from converter.theme import theme_named
 from evaluate.inputs import read_scene_file, require_writable
 from evaluate.names import safe_name
 from evaluate.output import print_json, print_line
+from evaluate.picture_files import require_still, write_drawing
 from evaluate.trial import require_plannable
 from pcg.errors import InputError
 from planner import Settings
@@ -35,8 +36,10 @@ def tree_of(search: Search) -> list[TreeNode]:
     ]
 
 
-def run(path: Path, out: Path, settings: Settings, seed: int, *, as_json: bool) -> bool:
+def run(path: Path, out: Path, settings: Settings, seed: int, *, format_: str, theme: str, as_json: bool) -> bool:
     """Runs the command; see `evaluate.cli.tree`."""
+    require_still(format_)
+    colors = theme_named(theme)
     scene = read_scene_file(path)
     if settings.generator not in GENERATORS:
         raise InputError("--method", f"{settings.method} is no forward search; {', '.join(GENERATORS)} are")
@@ -45,8 +48,9 @@ def run(path: Path, out: Path, settings: Settings, seed: int, *, as_json: bool) 
     search = Search(Problem(scene), settings, np.random.default_rng(np.random.SeedSequence(seed)))
     result = search.run()
     tree = tree_of(search)
-    file = out / f"{safe_name(scene.name)}-{safe_name(settings.method)}-{seed}-tree.png"
-    write_png(file, draw_tree(scene, tree))
+    file = out / f"{safe_name(scene.name)}-{safe_name(settings.method)}-{seed}-tree.{format_}"
+    drawing = tree_drawing(scene, tree, theme=colors)
+    write_drawing(file, drawing, tree_width_px(drawing), f"search tree of {settings.method} in {scene.name}")
     expanded = sum(node.mark is not Mark.OPEN for node in tree)
     if as_json:
         document = {"scene": scene.name, "status": result.status.value, "nodes": len(tree), "expanded": expanded}
