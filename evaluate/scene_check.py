@@ -6,12 +6,14 @@ import numpy as np
 
 from converter.plan import Plan
 from converter.polyline import path_length
-from converter.preview.checks import check_scene
+from converter.preview.checks import Problem as Fault
+from converter.preview.checks import ProblemKind, check_scene
 from converter.preview.drive import drive
 from converter.preview.playback import play_back
 from converter.preview.report import Approach, Push, SceneReport
 from converter.scene import Body, Scene
 from converter.shape import FloatArray
+from pcg.errors import InputError
 from planner.contact_curve import ContactCurve
 from planner.problem import Problem
 from planner.push import touching_point
@@ -45,7 +47,11 @@ def check(
     static = check_scene(scene)
     if not static.valid:
         return SceneReport(scene.name, static.problems)
-    surveyor = _Surveyor(scene) if drives or push_distance is not None else None
+    try:
+        surveyor = _Surveyor(scene) if drives or push_distance is not None else None
+    except InputError as error:
+        # The planner is exact where the engine has a slack.
+        return SceneReport(scene.name, (Fault(ProblemKind.OVERLAP, (), None, str(error)),))
     return SceneReport(
         scene=scene.name,
         problems=(),

@@ -39,7 +39,7 @@ class PlaybackProblemKind(StrEnum):
     NO_TOUCH = "no_touch"
     """The agent grasps an object that it does not touch; amount: the gap [m]."""
     PENETRATION = "penetration"
-    """The agent drives into a body; amount: how deep [m]."""
+    """The agent, or what it carries, is driven into a body; amount: how deep [m]."""
     MOVED = "moved"
     """An object moves that is not carried; amount: by how much [m]."""
     SLIPPED = "slipped"
@@ -166,9 +166,11 @@ class _Player:
         return slipped
 
     def _penetrations(self, i: int, held: Placed | None) -> Iterator[PlaybackProblem]:
+        movers = {AGENT} if held is None else {AGENT, held.name}
         for touch in self.simulation.touches:
-            if touch.depth > self._most and AGENT in touch.bodies and (held is None or held.name not in touch.bodies):
-                message = f"the agent penetrates {touch.bodies[1]} by {touch.depth:.6g} m"
+            one_moves = len(movers & set(touch.bodies)) == 1
+            if one_moves and touch.depth > self._most:
+                message = f"{touch.bodies[0]} penetrates {touch.bodies[1]} by {touch.depth:.6g} m"
                 kind = PlaybackProblemKind.PENETRATION
                 yield PlaybackProblem(kind, i, touch.bodies, touch.depth, touch.where, f"segment {i}: {message}")
 

@@ -18,7 +18,7 @@ import numpy as np
 import pymunk
 
 from converter.scene import NUMERIC_SLACK, Body, Scene
-from converter.shape import FloatArray, Part
+from converter.shape import FloatArray, Part, rotation
 
 AGENT = "agent"
 
@@ -91,6 +91,7 @@ class World:
         self.space.collision_slop = self.allowed
         self.space.on_collision(begin=self._ignore_other_heights)
         self.owner: dict[pymunk.Shape, Placed] = {}
+        self._outlines: dict[pymunk.Shape, Part] = {}
         self.walls = [self._place(wall, pymunk.Body.STATIC, self._category(wall)) for wall in scene.walls]
         self.objects = [self._place(body, pymunk.Body.DYNAMIC, MOVABLE) for body in scene.objects]
         agent = scene.agent
@@ -116,6 +117,16 @@ class World:
         placed.refresh()
         return contacts
 
+    def depth(self, first: pymunk.Shape, second: pymunk.Shape) -> float:
+        """How deep two shapes penetrate each other [m], negative if they are apart; exact, unlike the engine's."""
+        (one, radius), (other, other_radius) = self._outline(first), self._outline(second)
+        return radius + other_radius - signed_distance(one, other)
+
+    def _outline(self, shape: pymunk.Shape) -> tuple[FloatArray, float]:
+        """Core polygon (n, 2) [m], world, and edge radius [m]."""
+        part, body = self._outlines[shape], self.owner[shape].body
+        return part.core @ rotation(body.angle) + np.array(body.position), part.edge_radius
+
     def _contacts(self, placed: Placed) -> list[Contact]:
         return [
             Contact(
@@ -133,8 +144,8 @@ class World:
         turns = self._density is not None and body_type == pymunk.Body.DYNAMIC and body.name != AGENT
         frame = pymunk.Body() if turns else pymunk.Body(1.0, math.inf, body_type=body_type)
         frame.position = float(body.position[0]), float(body.position[1])
-        radii = (part.edge_radius for part in body.parts)
-        shapes = tuple(shape_of(frame, core, radius) for core, radius in zip(body.cores, radii, strict=True))
+        outlines = [(core, part.edge_radius) for core, part in zip(body.cores, body.parts, strict=True)]
+        shapes = tuple(shape_of(frame, core, radius) for core, radius in outlines)
         for shape in shapes if turns else ():
             shape.density = (self._density or 0.0) * body.height
         placed = Placed(body.name, body.bottom_top, frame, shapes)
@@ -143,6 +154,7 @@ class World:
             # Shapes of one group do not collide: the parts of a body may overlap.
             shape.filter = pymunk.ShapeFilter(group=len(self.space.bodies), categories=categories)
             self.owner[shape] = placed
+        self._outlines.update(zip(shapes, (Part(c, r) for c, r in outlines), strict=True))
         return placed
 
     def _category(self, wall: Body) -> int:
@@ -169,3 +181,24 @@ def shape_of(frame: pymunk.Body, core: FloatArray, radius: float) -> pymunk.Shap
     if len(vertices) == 2:
         return pymunk.Segment(frame, vertices[0], vertices[1], radius)
     return pymunk.Poly(frame, vertices, radius=radius)
+
+
+def signed_distance(first: FloatArray, second: FloatArray) -> float:
+    """Distance of two convex polygons (n, 2), (m, 2) [m]; of those that overlap the penetration, negative.
+
+    It is the largest gap between their projections on a line. That is on the normal of an edge or, between two corners,
+    on the line that joins them.
+    """
+    corners = (second[:, None] - first[None]).reshape(-1, 2)
+    directions = np.concatenate([corners, _normals(first), -_normals(second)])
+    lengths = np.hypot(*directions.T)
+    directions = directions[lengths > 0] / lengths[lengths > 0, None]
+    if len(directions) == 0:
+        return 0.0
+    return float(((directions @ second.T).min(axis=1) - (directions @ first.T).max(axis=1)).max())
+
+
+def _normals(polygon: FloatArray) -> FloatArray:
+    """Outward normals (n, 2) of the edges of a counter-clockwise polygon."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    return np.column_stack([edges[:, 1], -edges[:, 0]])
