@@ -5,10 +5,15 @@ with a position also the position one-hot and the window around it, one-hot by t
 of the map, then the window's frozen cells; last the scalars of `scalars`.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
 from pcg.episodes import Episodes, EpisodeSettings
+from pcg.grid import BoolArray
+from pcg.level import TileArray
 from pcg.representation import N_TILES
 from pcg.reward import Control
 from pcg.statistics_kernel import Column
@@ -20,6 +25,9 @@ WINDOW = 5
 
 SCALARS = 24
 
+SCALAR_LIMIT = 10.0
+"""Scalars are clipped to plus and minus this."""
+
 
 def observation_size(settings: EpisodeSettings) -> int:
     """Numbers in an observation."""
@@ -30,66 +38,87 @@ def observation_size(settings: EpisodeSettings) -> int:
 
 
 def scalars(episodes: Episodes) -> Float32Array:
-    """(n, SCALARS) counts, distances, flags, budgets and controls, scaled to about -2 to 2."""
-    s, c, settings = episodes.statistics, episodes.controls, episodes.settings
-    wanted = settings.reward
-    walls, pushes = s[:, Column.WALLS], s[:, Column.PUSHES]
-    tenth = settings.cells / 10
-    # An open band would be far outside of the range that a network knows.
-    pushes_high = np.minimum(c[:, Control.PUSHES_HIGH], 40)
+    """(n, SCALARS) counts, distances, flags, controls and what is left of the budgets, most of them within -2 to 2."""
+    settings = episodes.settings
+    wanted, tenth = settings.reward, settings.cells / 10
+    s, c = episodes.statistics.T, episodes.controls.T
+    walls, pushes, solved = s[Column.WALLS], s[Column.PUSHES], s[Column.SOLVABLE]
     parts = (
-        np.clip(s[:, Column.PLAYERS] - 1, -1, 4) / 2,
-        np.clip(s[:, Column.CRATES] - wanted.crates, -4, 4) / 2,
-        np.clip(s[:, Column.TARGETS] - wanted.targets, -4, 4) / 2,
-        np.clip(s[:, Column.REGIONS] - 1, -1, 4) / 2,
+        np.clip(s[Column.PLAYERS] - 1, -1, 4) / 2,
+        np.clip(s[Column.CRATES] - wanted.crates, -4, 4) / 2,
+        np.clip(s[Column.TARGETS] - wanted.targets, -4, 4) / 2,
+        np.clip(s[Column.REGIONS] - 1, -1, 4) / 2,
         walls / tenth / 2,
-        np.clip(c[:, Control.WALLS_LOW] - walls, 0, 2 * tenth) / tenth,
-        np.clip(walls - c[:, Control.WALLS_HIGH], 0, 2 * tenth) / tenth,
-        s[:, Column.SOLVABLE],
+        np.clip(c[Control.WALLS_LOW] - walls, 0, 2 * tenth) / tenth,
+        np.clip(walls - c[Control.WALLS_HIGH], 0, 2 * tenth) / tenth,
+        solved,
         pushes / 10,
-        np.clip(c[:, Control.PUSHES_LOW] - pushes, 0, 40) / 10,
-        np.clip(pushes - c[:, Control.PUSHES_HIGH], 0, 40) / 10,
-        s[:, Column.OCCLUDED],
-        s[:, Column.DEPENDENCY],
-        c[:, Control.WALLS_LOW] / tenth / 2,
-        c[:, Control.WALLS_HIGH] / tenth / 2,
-        c[:, Control.PUSHES_LOW] / 10,
-        pushes_high / 10,
-        c[:, Control.OCCLUDED],
-        c[:, Control.DEPENDENCY],
-        c[:, Control.OCCLUDED] * (2 * s[:, Column.OCCLUDED] - 1) * s[:, Column.SOLVABLE],
-        c[:, Control.DEPENDENCY] * (2 * s[:, Column.DEPENDENCY] - 1) * s[:, Column.SOLVABLE],
+        np.clip(c[Control.PUSHES_LOW] - pushes, 0, 40) / 10,
+        np.clip(pushes - c[Control.PUSHES_HIGH], 0, 40) / 10,
+        s[Column.OCCLUDED],
+        s[Column.DEPENDENCY],
+        c[Control.WALLS_LOW] / tenth / 2,
+        c[Control.WALLS_HIGH] / tenth / 2,
+        c[Control.PUSHES_LOW] / 10,
+        # An open band would be far outside of the range that a network knows.
+        np.minimum(c[Control.PUSHES_HIGH], 40) / 10,
+        c[Control.OCCLUDED],
+        c[Control.DEPENDENCY],
+        c[Control.OCCLUDED] * (2 * s[Column.OCCLUDED] - 1) * solved,
+        c[Control.DEPENDENCY] * (2 * s[Column.DEPENDENCY] - 1) * solved,
         np.clip(episodes.distance / 10, 0, 2),
         1 - episodes.changes / settings.max_changes,
         1 - episodes.steps / settings.max_steps,
     )
-    return np.stack(parts, axis=1).astype(np.float32)
+    numbers = np.empty((episodes.n, SCALARS), dtype=np.float32)
+    for column, part in enumerate(parts):
+        numbers[:, column] = part
+    return np.clip(numbers, -SCALAR_LIMIT, SCALAR_LIMIT, out=numbers)
+
+
+def observation_parts(episodes: Episodes) -> dict[str, npt.NDArray[Any]]:
+    """The observations of `pcg.environment`, with n as first axis: copies, not views."""
+    settings = episodes.settings
+    goal = episodes.statistics[:, Column.GOAL, None] == np.arange(settings.cells)
+    parts: dict[str, npt.NDArray[Any]] = {
+        "map": episodes.maps.copy(),
+        "frozen": episodes.frozen.copy(),
+        "goal": goal.astype(np.uint8).reshape(episodes.maps.shape),
+        "scalars": scalars(episodes),
+    }
+    if episodes.representation.has_position:
+        parts["position"] = np.stack(np.divmod(episodes.representation.positions(), settings.columns), axis=1)
+    return parts
+
+
+def flat_observations(parts: Mapping[str, npt.NDArray[Any]], settings: EpisodeSettings) -> Float32Array:
+    """(n, observation_size) vectors of what `observation_parts` returned."""
+    n = len(parts["map"])
+    pieces = [
+        (parts["map"].reshape(n, -1, 1) == np.arange(N_TILES)).reshape(n, -1),
+        parts["frozen"].reshape(n, -1),
+        parts["goal"].reshape(n, -1),
+    ]
+    if "position" in parts:
+        row, column = parts["position"].T
+        pieces.append((row * settings.columns + column)[:, None] == np.arange(settings.cells))
+        pieces.append(_windows(parts["map"], parts["frozen"], row, column))
+    return np.concatenate([*(piece.astype(np.float32) for piece in pieces), parts["scalars"]], axis=1)
 
 
 def observations(episodes: Episodes) -> Float32Array:
-    """(n, observation_size) observations."""
-    n, settings = episodes.n, episodes.settings
-    maps = episodes.maps.reshape(n, -1)
-    parts = [
-        (maps[:, :, None] == np.arange(N_TILES)).reshape(n, -1),
-        episodes.frozen.reshape(n, -1),
-        episodes.statistics[:, Column.GOAL, None] == np.arange(settings.cells),
-    ]
-    if episodes.representation.has_position:
-        positions = episodes.representation.positions()
-        parts += [positions[:, None] == np.arange(settings.cells), _window(episodes, positions)]
-    return np.concatenate([*(part.astype(np.float32) for part in parts), scalars(episodes)], axis=1)
+    """(n, observation_size) what a policy sees."""
+    return flat_observations(observation_parts(episodes), episodes.settings)
 
 
-def _window(episodes: Episodes, positions: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+def _windows(
+    maps: TileArray, frozen: TileArray, rows: npt.NDArray[np.int64], columns: npt.NDArray[np.int64]
+) -> BoolArray:
     """(n, WINDOW * WINDOW * 7) tiles and frozen cells around the positions."""
-    n, columns, margin = episodes.n, episodes.settings.columns, WINDOW // 2
+    n, margin = len(maps), WINDOW // 2
     border = ((0, 0), (margin, margin), (margin, margin))
     around = np.arange(WINDOW)
-    rows = (positions // columns)[:, None, None] + around[:, None]
-    cols = (positions % columns)[:, None, None] + around
-    numbers = np.arange(n)[:, None, None]
-    tiles = np.pad(episodes.maps, border, constant_values=N_TILES)[numbers, rows, cols].reshape(n, -1)
-    frozen = np.pad(episodes.frozen, border, constant_values=1)[numbers, rows, cols].reshape(n, -1)
-    one_hot = (tiles[:, :, None] == np.arange(N_TILES + 1)).reshape(n, -1)
-    return np.concatenate([one_hot, frozen == 1], axis=1)
+    cells = np.arange(n)[:, None, None], rows[:, None, None] + around[:, None], columns[:, None, None] + around
+    tiles = np.pad(maps, border, constant_values=N_TILES)[cells].reshape(n, -1, 1)
+    fixed = np.pad(frozen, border, constant_values=1)[cells].reshape(n, -1)
+    return np.concatenate([(tiles == np.arange(N_TILES + 1)).reshape(n, -1), fixed == 1], axis=1)

@@ -17,15 +17,15 @@ import numpy as np
 import onnxruntime
 from pydantic import Field
 
-from pcg.episodes import Beginning, Episodes, EpisodeSettings, random_maps
+from pcg.episodes import Episodes, EpisodeSettings
 from pcg.errors import InputError
-from pcg.frozen import FrozenTiles
 from pcg.level import Level
 from pcg.observation import Float32Array, observation_size, observations
-from pcg.representation import N_TILES, IntArray
+from pcg.representation import IntArray
 from pcg.request import Rejection, Request
-from pcg.reward import Control, FloatArray, RewardSettings
+from pcg.reward import RewardSettings
 from pcg.statistics_kernel import Column
+from pcg.task import request_beginning, require_fitting
 from pcg.validation import Document, validated
 
 METADATA_KEY = "manipuzzle"
@@ -189,12 +189,12 @@ def policy_levels(policy: Policy, request: Request, rng: np.random.Generator, ba
             a player or crate on a target.
     """
     settings = policy.settings
-    _require_fitting(policy, request)
+    require_fitting(request, settings, f"policy {policy.representation}")
     episodes = Episodes(settings, batch)
     number = np.arange(batch)
     started, next_number = batch, 0
     finished: dict[int, Attempt] = {}
-    episodes.begin(rng, number, _beginning(rng, batch, request, settings))
+    episodes.begin(rng, number, request_beginning(rng, batch, request, settings))
     while True:
         transition = episodes.step(policy.sample(observations(episodes), rng))
         ended = np.flatnonzero(transition.terminated | transition.truncated)
@@ -203,47 +203,10 @@ def policy_levels(policy: Policy, request: Request, rng: np.random.Generator, ba
         if len(ended):
             number[ended] = started + np.arange(len(ended))
             started += len(ended)
-            episodes.begin(rng, ended, _beginning(rng, len(ended), request, settings))
+            episodes.begin(rng, ended, request_beginning(rng, len(ended), request, settings))
         while next_number in finished:
             yield finished.pop(next_number)
             next_number += 1
-
-
-def controls_of(request: Request) -> FloatArray:
-    """(len(Control),) controls of a request."""
-    controls = np.zeros(len(Control))
-    low, high = request.wall_density
-    controls[Control.WALLS_LOW] = np.ceil(low * request.cells - 1e-9)
-    controls[Control.WALLS_HIGH] = np.floor(high * request.cells + 1e-9)
-    controls[Control.PUSHES_LOW], controls[Control.PUSHES_HIGH] = request.pushes
-    controls[Control.OCCLUDED] = _SIGN[request.occluded]
-    controls[Control.DEPENDENCY] = _SIGN[request.dependency]
-    return controls
-
-
-_SIGN = {None: 0, False: -1, True: 1}
-
-
-def _require_fitting(policy: Policy, request: Request) -> None:
-    settings = policy.settings
-    trained = settings.rows, settings.columns, settings.reward.crates, settings.reward.targets
-    if trained != (request.rows, request.columns, request.crates, request.targets):
-        raise InputError(
-            f"policy {policy.representation}",
-            f"asked for {request.rows} x {request.columns} cells, {request.crates} crates and {request.targets} targets; "
-            f"it makes {trained[0]} x {trained[1]} cells, {trained[2]} crates and {trained[3]} targets",
-        )
-    frozen = request.frozen
-    if frozen is not None and (frozen.tiles[frozen.is_open == 0] >= N_TILES).any():
-        raise InputError("frozen", "a policy cannot keep a player or a crate that stands on a target")
-
-
-def _beginning(rng: np.random.Generator, n: int, request: Request, settings: EpisodeSettings) -> Beginning:
-    controls = np.tile(controls_of(request), (n, 1))
-    maps = random_maps(rng, controls, settings)
-    fixed = request.frozen or FrozenTiles.none(request.rows, request.columns)
-    maps = np.where(fixed.is_open, maps, fixed.tiles)
-    return Beginning(maps, np.broadcast_to(~fixed.is_open, maps.shape).astype(np.uint8), controls)
 
 
 def _attempt(episodes: Episodes, index: int, met: bool) -> Attempt:  # noqa: FBT001 - a field of the result

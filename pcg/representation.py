@@ -68,7 +68,8 @@ class Narrow:
 
     def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
         """Draws the order of the cells."""
-        self._order[episodes] = rng.permuted(self._order[episodes], axis=1)
+        in_order = np.tile(np.arange(self._order.shape[1]), (len(episodes), 1))
+        self._order[episodes] = rng.permuted(in_order, axis=1)
         self._visited[episodes] = 0
 
     def positions(self) -> IntArray:

@@ -24,7 +24,12 @@ HOMES = {
     },
     "cv2": {"converter/h264.py", "converter/image_file.py", "converter/raster.py"},
     "distributed": {"evaluate/cluster.py"},
-    "gymnasium": {"pcg/train.py"},
+    "gymnasium": {
+        "pcg/environment.py",
+        "pcg/train.py",
+        "pcg/vector_environment.py",
+        "pcg/wrappers.py",
+    },
     "jinja2": {"converter/viewer_page.py", "evaluate/report_html.py"},
     "matplotlib": {"evaluate/plot_style.py", "evaluate/plots.py", "pcg/learning_curve.py"},
     "numba": {
