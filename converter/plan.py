@@ -155,18 +155,24 @@ def plan_document(plan: Plan) -> dict[str, Any]:
     }
 
 
-class _Subgoal(Document):
+class SubgoalDocument(Document):
+    """A placement: `object` rests with its centre at `position`."""
+
     object: str
     position: tuple[Number, Number]
 
 
-class _Segment(Document):
+class SegmentDocument(Document):
+    """A piece of motion: agent centres joined by straight lines; in a `carry` the agent holds `object`."""
+
     mode: Literal["move", "carry"]
     object: str | None = None
     path: list[tuple[Number, Number]]
 
 
-class _Plan(Document):
+class PlanDocument(Document):
+    """The outcome of one planning attempt; lengths in metres, times in seconds."""
+
     format: Literal[1]
     scene: str
     scene_hash: str
@@ -180,8 +186,8 @@ class _Plan(Document):
     certificate: str | None = None
     counters: dict[str, float] = Field(default_factory=dict)
     cost: dict[str, float] | None = None
-    subgoals: list[_Subgoal] = Field(default_factory=list)
-    segments: list[_Segment] = Field(default_factory=list)
+    subgoals: list[SubgoalDocument] = Field(default_factory=list)
+    segments: list[SegmentDocument] = Field(default_factory=list)
     scene_data: dict[str, Any] | None = None
 
 
@@ -206,7 +212,7 @@ def plan_from_document(data: Any, where: str) -> Plan:
     Raises:
         InputError: naming the field and the reason.
     """
-    document = validated(_Plan, data, where)
+    document = validated(PlanDocument, data, where)
     scene = None
     if document.scene_data is not None:
         scene = scene_yaml.from_document(document.scene_data, f"{where}: scene_data")

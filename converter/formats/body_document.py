@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
+from pydantic.config import JsonDict
 
 from converter.scene import Body
 from converter.shape import FloatArray, Part, denoised, rotation
@@ -34,6 +35,11 @@ def _printable(text: str) -> str:
     return text
 
 
+def _only(fields: list[str], without: list[str]) -> JsonDict:
+    """The JSON Schema of an object that has some fields and lacks others."""
+    return {"required": list(fields), "not": {"anyOf": [{"required": [field]} for field in without]}}
+
+
 Number = Annotated[float, Field(strict=True, ge=-MAX_LENGTH, le=MAX_LENGTH)]
 Length = Annotated[float, Field(strict=True, ge=MIN_LENGTH, le=MAX_LENGTH)]
 Radius = Annotated[float, Field(strict=True, ge=0, le=MAX_LENGTH)]
@@ -44,6 +50,8 @@ Polygon = Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1, max_l
 
 class PartDocument(Document):
     """One convex part: a box of outer `size`, turned by `yaw` and then moved by `offset`, or a polygon likewise."""
+
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["size"]}, {"required": ["polygon"]}]})
 
     size: tuple[Length, Length] | None = None
     polygon: Polygon | None = None
@@ -60,6 +68,16 @@ class PartDocument(Document):
 
 class BodyDocument(Document):
     """One wall or object."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [
+                _only(["size"], ["polygon", "parts", "height"]),
+                _only(["polygon", "height"], ["size", "parts"]),
+                _only(["parts", "height"], ["size", "polygon", "edge_radius"]),
+            ]
+        }
+    )
 
     name: Name
     position: tuple[Number, Number, Number]

@@ -23,28 +23,34 @@ MAX_BYTES = 8_000_000
 MAX_BODIES = 10_000
 
 
-class _Agent(Document):
+class AgentDocument(Document):
+    """The disc that grasps and carries; it stands on the floor."""
+
     position: tuple[Number, Number]
     radius: Length
     height: Length = 0.2
 
 
-class _Goal(Document):
+class GoalDocument(Document):
+    """The axis-aligned rectangle in which the centre of `object` has to come to rest."""
+
     object: str
     position: tuple[Number, Number]
     size: tuple[Length, Length]
 
 
-class _Scene(Document):
+class SceneDocument(Document):
+    """A manipulation puzzle: lengths in metres, angles in radians, z = 0 is the floor."""
+
     format: Literal[1]
     name: Name | None = None
     preset: Literal["clear", "published"] | None = None
     bounds: tuple[tuple[Number, Number], tuple[Number, Number]]
     tolerance: Radius
-    agent: _Agent
+    agent: AgentDocument
     walls: Annotated[tuple[BodyDocument, ...], Field(max_length=MAX_BODIES)] = ()
     objects: Annotated[tuple[BodyDocument, ...], Field(min_length=1, max_length=MAX_BODIES)]
-    goal: _Goal
+    goal: GoalDocument
     source: dict[str, Any] = Field(default_factory=dict)
 
 
@@ -84,7 +90,7 @@ def from_document(data: Any, where: str, name: str = "scene") -> Scene:
     Raises:
         InputError: naming the field and the reason.
     """
-    document = validated(_Scene, data, where)
+    document = validated(SceneDocument, data, where)
     walls = tuple(to_body(body, f"{where}: walls[{i}]") for i, body in enumerate(document.walls))
     objects = tuple(to_body(body, f"{where}: objects[{i}]") for i, body in enumerate(document.objects))
     try:
@@ -129,7 +135,7 @@ def to_document(scene: Scene) -> dict[str, Any]:
         },
         "source": _plain(scene.source),
     }
-    validated(_Scene, document, scene.name)
+    validated(SceneDocument, document, scene.name)
     return document
 
 
