@@ -86,6 +86,9 @@ Tolerance = Annotated[
         metavar="METRES", min=0, help="Penetration that counts as touching, instead of the scene's.", show_default=False
     ),
 ]
+Baseline = Annotated[
+    bool, typer.Option("--baseline", help="Let the random baseline answer the agents' requests, not their policies.")
+]
 
 
 def _asked(metavar: str, text: str, default: str, **limits: float) -> Any:
@@ -190,6 +193,85 @@ def generate(
         dependency=dependency,
     )
     _exit(run(agent, count, seed, request, out, as_json=json))
+
+
+corpus_app = typer.Typer(
+    cls=_Commands,
+    rich_markup_mode=None,
+    short_help="Build the corpus of 360 levels, check it, plot it.",
+    help="""Build the corpus of all agents, check that it can be built again, plot it.
+
+    Example:  manipuzzle corpus check data/corpus
+    """,
+)
+app.add_typer(corpus_app, name="corpus")
+
+
+@corpus_app.command("build", short_help="Generate, select, split and document the corpus.")
+def corpus_build(*, out: Out, baseline: Baseline = False, json: Json = False) -> None:
+    """Let every agent of data/agents.yaml make 100 levels and keep 10: levels.xsb, manifest.jsonl and a data card.
+
+    Example:  manipuzzle corpus build --out data/corpus
+    """
+    from evaluate.commands.corpus import build
+
+    _exit(build(out, baseline=baseline, as_json=json))
+
+
+@corpus_app.command("check", short_help="Build the corpus anew and compare.")
+def corpus_check(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the corpus.")],
+    *,
+    baseline: Baseline = False,
+    json: Json = False,
+) -> None:
+    """Build the corpus anew, in memory, and report the levels that differ. Exit status 1 if one does.
+
+    Example:  manipuzzle corpus check data/corpus
+    """
+    from evaluate.commands.corpus import check
+
+    _exit(check(folder, baseline=baseline, as_json=json))
+
+
+@corpus_app.command("plot", short_help="Draw the expressive range of level sets.")
+def corpus_plot(
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR", help="Level sets.")],
+    *,
+    out: Out,
+    format_: Annotated[str, typer.Option("--format", metavar="NAME", help="svg, pdf or png.")] = "png",
+    json: Json = False,
+) -> None:
+    """Draw histograms of walls and pushes, one a level set: DIR/expressive-range.{format}.
+
+    Example:  manipuzzle corpus plot data/corpus out/levels --out out/pictures
+    """
+    from evaluate.commands.corpus import plot
+
+    _exit(plot(folders, out, format_, as_json=json))
+
+
+@app.command("compare-generators", short_help="Compare the random baseline with the policies.")
+def compare_generators(
+    *,
+    out: Out,
+    seeds: Annotated[int, typer.Option(metavar="N", min=1, max=1000, help="Runs of each source on each task.")] = 3,
+    seconds: Annotated[float, typer.Option(metavar="SECONDS", min=0.01, max=1e6, help="CPU time of a run.")] = 10.0,
+    max_levels: Annotated[
+        int, typer.Option(metavar="N", min=1, max=1_000_000, help="A run ends when it has made as many levels.")
+    ] = 500,
+    task: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="A task; repeat for several.", show_default="all")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Let random baseline, untrained and trained policies make levels; DIR/comparison.md compares yield and diversity.
+
+    Example:  manipuzzle compare-generators --out out/comparison --seeds 3 --seconds 10
+    """
+    from evaluate.commands.compare_generators import run
+
+    _exit(run(out, seeds, seconds, max_levels, task or [], as_json=json))
 
 
 @app.command(short_help="Report on levels: solvable, statistics, duplicates.")
@@ -309,7 +391,7 @@ def check(
         typer.Option(
             metavar="METRES",
             min=0,
-            max=1e4,
+            max=100,
             help="Also drive this far against every object, from four sides.",
             show_default=False,
         ),

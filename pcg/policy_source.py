@@ -1,6 +1,6 @@
 """Levels by policies, trained or not."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,6 +59,15 @@ class UntrainedPolicy(Policy):
         """(n,) actions; see `Policy.sample`."""
         (logits,) = self.session.get_outputs()
         return rng.integers(logits.shape[1], size=len(observed))
+
+
+def policies_of(agents: Iterable[Agent]) -> dict[str, Policy]:
+    """The policies of agents by representation.
+
+    Raises:
+        InputError: a policy is missing or cannot be read.
+    """
+    return {name: load_policy(policy_path(name)) for name in dict.fromkeys(agent.representation for agent in agents)}
 
 
 def source_of(agent: Agent) -> PolicySource:
