@@ -16,7 +16,16 @@ import time
 from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
-from distributed import Client, Future, KilledWorker, LocalCluster, WorkerPlugin, as_completed, get_worker
+from distributed import (
+    Client,
+    Future,
+    KilledWorker,
+    LocalCluster,
+    Reschedule,
+    WorkerPlugin,
+    as_completed,
+    get_worker,
+)
 
 from evaluate.worker_process import Duty
 from evaluate.workers import Failure, Job, Result, Task, Worker
@@ -119,12 +128,14 @@ class _Places(WorkerPlugin):
         """Called by Dask on each of its workers."""
         del worker
         self._lock = threading.Lock()
+        self._closed = False
         self._idle: list[Worker[Any, Any]] = []
         self._all: list[Worker[Any, Any]] = []
 
     def teardown(self, worker: Any) -> None:
         """Called by Dask when the run or the Dask worker ends."""
         del worker
+        self._closed = True
         with self._lock:
             for place in self._all:
                 place.kill()
@@ -136,7 +147,13 @@ class _Places(WorkerPlugin):
                 self._idle.append(Worker(self._duty))
                 self._all.append(self._idle[0])
             place = self._idle.pop()
-        outcome = place.do(task, seconds)
+        try:
+            outcome = place.do(task, seconds)
+        except Exception:
+            if self._closed:
+                # The Dask worker was told to end, and the process taken away: the task begins anew elsewhere.
+                raise Reschedule from None
+            raise
         with self._lock:
             self._idle.append(place)
         return self._failed(task, outcome) if isinstance(outcome, Failure) else outcome

@@ -97,7 +97,8 @@ def read_study(path: Path, demonstrations: Path | None = None) -> Study:
     if not found.scenes:
         raise InputError(str(path), "scenes: none is left")
     require_distinct([f"{scene.name} {scene.preset}" for scene in found.scenes], f"{path}: scenes")
-    shared = Shared(spec.settings, _changes(spec, path, demonstrations), path.parent)
+    folder = path.parent.resolve()
+    shared = Shared(spec.settings, _changes(spec, folder, demonstrations), folder)
     methods = [
         method
         for i, document in enumerate(spec.methods)
@@ -115,12 +116,12 @@ def read_study(path: Path, demonstrations: Path | None = None) -> Study:
     )
 
 
-def _changes(spec: _Study, path: Path, demonstrations: Path | None) -> dict[str, Any]:
+def _changes(spec: _Study, folder: Path, demonstrations: Path | None) -> dict[str, Any]:
     changes: dict[str, Any] = {"time_limit": spec.time_limit, "improve": spec.improve}
     if spec.iterations is not None:
         changes["max_expansions"] = spec.iterations
     if spec.demonstrations is not None:
-        changes["demonstrations"] = str(path.parent / spec.demonstrations)
+        changes["demonstrations"] = str(folder / spec.demonstrations)
     if demonstrations is not None:
-        changes["demonstrations"] = str(demonstrations)
+        changes["demonstrations"] = str(demonstrations.resolve())
     return changes

@@ -1,8 +1,9 @@
 """One trial: one planner on one scene with one seed, and the independent verification of its plan."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -39,6 +40,10 @@ class Trial:
         scene, method = self.scene, self.method
         return digest([scene.geometry_hash, scene.name, method.name, self.seed, method.hash])
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        _freeze(self.scene)
+
     def run(self) -> "TrialOutcome":
         """Plans and verifies.
 
@@ -69,6 +74,21 @@ class TrialOutcome:
     def solved(self) -> bool:
         """Whether there is a plan that passed verification."""
         return self.verified is True
+
+
+def _freeze(value: Any) -> None:
+    """Makes all arrays in a scene read-only again, which they are no longer when it comes from another process.
+
+    To Numba arrays that can be written to are of another type, for which it would compile everything once more.
+    """
+    if isinstance(value, np.ndarray):
+        value.setflags(write=False)
+    elif isinstance(value, tuple):
+        for each in value:
+            _freeze(each)
+    elif is_dataclass(value):
+        for each in vars(value).values():
+            _freeze(each)
 
 
 def run_trial(scene: Scene, settings: Settings, seed: int) -> TrialOutcome:

@@ -94,11 +94,11 @@ class WorkerProcess:
 
 
 def kill_session(leader: int) -> None:
-    """Kills all processes of the session that `leader` began; where there is no /proc, only the leader."""
-    members = [int(path.name) for path in Path("/proc").glob("[0-9]*")] or [leader]
-    for pid in members:
+    """Kills the processes of the session that `leader` began, but for itself; where there is no /proc, none."""
+    for path in Path("/proc").glob("[0-9]*"):
+        pid = int(path.name)
         with contextlib.suppress(ProcessLookupError, PermissionError):
-            if os.getsid(pid) == leader:
+            if pid != leader and os.getsid(pid) == leader:
                 os.kill(pid, signal.SIGKILL)
 
 

@@ -1,6 +1,7 @@
 """Trials."""
 
 import json
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -81,6 +82,18 @@ def test_identity_of_a_trial(small_room: Scene):
     ]
     assert len({trial.key, *(other.key for other in others)}) == 6
     assert replace(trial, scene=replace(small_room, source={"level": "x"})).key == trial.key
+
+
+def test_scenes_stay_read_only_between_processes(small_room: Scene):
+    """Otherwise every worker would compile the planner again, inside the time of its first trial."""
+    trial = Trial(small_room, Method("Rnd+FPR", Settings()), 0)
+    assert trial.key
+    scene = pickle.loads(pickle.dumps(trial)).scene  # noqa: S301 - our own bytes
+    bodies = (*scene.walls, *scene.objects)
+    arrays = [scene.bounds, scene.agent.position, scene.goal.position, scene.goal.size]
+    arrays += [array for body in bodies for array in (body.position, *body.cores, *(p.core for p in body.parts))]
+    assert not any(array.flags.writeable for array in arrays)
+    assert scene.geometry_hash == small_room.geometry_hash
 
 
 def test_an_invalid_start_names_the_file(small_room: Scene):
