@@ -72,10 +72,13 @@ class OwnPlanner:
         return settings.method != "Push" or "xsb" in scene.source
 
     def prepare(self, scene: Scene, settings: Settings) -> None:
-        """See `Planner`."""
+        """Imports what is not ours, and plans by what is: whether the other works, trials will tell."""
+        for reference in (self.subgoals, self.heuristic):
+            if reference is not None:
+                reference.load()
         # Nobody demonstrates a scene like this one, and no level is its source.
         method = "Rnd+R" if settings.generator in {"Hum", "Push"} else settings.method
-        self.plan(scene, replace(settings, method=method, improve_rounds=1), 0)
+        OwnPlanner().plan(scene, replace(settings, method=method, improve_rounds=1), 0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,6 +44,13 @@ class Duty:
     memory_mb: int | None
 
 
+@dataclass(frozen=True)
+class Unprepared:
+    """What a worker sends whose preparation failed, with the reason in one line; then it ends."""
+
+    reason: str
+
+
 class WorkerProcess:
     """The coordinator's side of a worker process, which starts at once.
 
@@ -111,7 +118,10 @@ def serve(descriptor: int) -> None:
         if duty.memory_mb is not None:
             resource.setrlimit(resource.RLIMIT_DATA, (duty.memory_mb << 20, duty.memory_mb << 20))
         if duty.prepare is not None:
-            duty.prepare()
+            prepared, reason = _outcome(lambda prepare: prepare(), duty.prepare)
+            if not prepared:
+                connection.send(Unprepared(reason))
+                return
         connection.send(READY)
         while True:
             connection.send(_outcome(duty.function, connection.recv()))

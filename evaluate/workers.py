@@ -20,7 +20,7 @@ from enum import Enum, auto
 from multiprocessing.connection import wait
 from typing import Any, Generic, Literal, Protocol, TypeVar
 
-from evaluate.worker_process import READY, Duty, WorkerProcess
+from evaluate.worker_process import READY, Duty, Unprepared, WorkerProcess
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -191,6 +191,8 @@ class Worker(Generic[Task, Result]):
             message = process.connection.recv()
         except (EOFError, OSError):
             return self._lost(process)
+        if isinstance(message, Unprepared):
+            raise WorkerStartError(f"worker processes cannot be prepared: {message.reason}")
         if message is READY:
             self._ready, self._failed_starts = True, 0
             self._send(process)

@@ -33,7 +33,9 @@ def run(
             log(f"interrupted: the finished trials are in {out}, the same command continues")
             raise
         except WorkerStartError as error:
-            raise InputError(str(spec), f"{error}; memory_mb may be too small") from None
+            raise InputError(
+                str(spec), f"{error}" + ("; memory_mb may be too small" if study.memory_mb else "")
+            ) from None
     write_text(out / TABLE_FILE, study_table(study, summary.cells))
     totals = by_method(summary.cells)
     by_name = {method: totals.get(method, Cell()) for method in (m.name for m in study.methods)}

@@ -260,11 +260,12 @@ def test_study_reports_and_resumes(run: Run, folder: Path):
 def test_workers_that_cannot_start_are_one_line(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch):
     """Too little memory for a worker, here stood in for by a preparation that fails, ends the study clearly."""
     monkeypatch.setattr("evaluate.study.prepare", operator.truediv)
-    (folder / "spec.yaml").write_text("name: s\nscenes: [room.yaml]\nmethods: [Rnd+R]\nseeds: 2\n")
+    (folder / "spec.yaml").write_text("name: s\nscenes: [room.yaml]\nmethods: [Rnd+R]\nseeds: 2\nmemory_mb: 4096\n")
     result = run("study", "spec.yaml", "--out", "study")
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr == (
-        "error: spec.yaml: worker processes end at their start with exit status 1; memory_mb may be too small\n"
+        "error: spec.yaml: worker processes cannot be prepared: TypeError: truediv expected 2 arguments, got 1; "
+        "memory_mb may be too small\n"
     )
 
 

@@ -143,8 +143,10 @@ def test_tasks_are_drawn_lazily():
 
 
 def test_workers_that_cannot_start_end_the_run():
-    """An error before the first task, here in the preparation, is no task's fault and is not repeated for ever."""
-    with pytest.raises(WorkerStartError, match="exit status 1"):
+    """An error before the first task is no task's fault; one of the preparation is quoted, others are tried again."""
+    with pytest.raises(WorkerStartError, match="at their start with exit status 3"):
+        list(run_tasks(job(math.factorial, prepare=partial(os._exit, 3)), iter([1]), 1))
+    with pytest.raises(WorkerStartError, match="cannot be prepared: ZeroDivisionError: division by zero"):
         list(run_tasks(job(math.factorial, prepare=partial(operator.truediv, 1, 0)), iter([1]), 1))
 
 
