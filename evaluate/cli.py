@@ -274,6 +274,28 @@ def compare_generators(
     _exit(run(out, seeds, seconds, max_levels, task or [], as_json=json))
 
 
+@app.command(short_help="Train a policy that makes levels.")
+def train(
+    *,
+    representation: Annotated[str, typer.Option(metavar="NAME", help="How it edits levels: narrow, turtle or wide.")],
+    out: Out,
+    steps: Annotated[int, typer.Option(metavar="N", min=1, help="Steps in all; rounded up.")] = 5_000_000,
+    seed: Seed = 0,
+    rows: Annotated[int, typer.Option(metavar="N", min=2, max=50, help="Inner rows of its levels.")] = 10,
+    columns: Annotated[int, typer.Option(metavar="N", min=2, max=50, help="Inner columns.")] = 10,
+    json: Json = False,
+) -> None:
+    """Train a policy by PPO on the CPU: {representation}.onnx, curve.png, checkpoints. Needs the extra rl.
+
+    The same command continues an interrupted run, and with more steps a finished one.
+
+    Example:  manipuzzle train --representation narrow --steps 5000000 --seed 0 --out out/narrow
+    """
+    from evaluate.commands.train import run
+
+    _exit(run(representation, steps, seed, rows, columns, out, as_json=json))
+
+
 @app.command(short_help="Report on levels: solvable, statistics, duplicates.")
 def levels(
     files: Annotated[list[Path], typer.Argument(metavar="FILE", help="XSB files or level sets.")],
