@@ -10,7 +10,7 @@ from numba import njit
 
 from pcg.frozen import OPEN
 from pcg.level import Tile, TileArray
-from pcg.solver_kernel import LIMIT, SOLVED, fewest_pushes
+from pcg.solver_kernel import LIMIT, SOLVED, fewest_pushes, make_board
 
 FLOOR, WALL, PLAYER, CRATE, TARGET, CRATE_ON_TARGET, PLAYER_ON_TARGET = (int(tile) for tile in Tile)
 _OPEN = OPEN
@@ -59,7 +59,7 @@ def draw_until(
             counts[NO_ROOM] += 1
             continue
         wall, player, crates, targets = _board(tiles)
-        status, _, path = fewest_pushes(wall, width, player, crates, 0, targets, max_states)
+        status, _, path = fewest_pushes(make_board(wall, width, targets), player, crates, 0, max_states)
         if status != SOLVED:
             counts[UNDECIDED if status == LIMIT else UNSOLVABLE] += 1
         elif path.shape[0] < low:
@@ -122,7 +122,7 @@ def _depends(
         return True
     alone = np.empty(1, dtype=np.int16)
     alone[0] = goal
-    status, _, _ = fewest_pushes(closed, width, player, alone, 0, targets[:1], max_states)
+    status, _, _ = fewest_pushes(make_board(closed, width, targets[:1]), player, alone, 0, max_states)
     return bool(status != SOLVED)
 
 
