@@ -1,0 +1,60 @@
+"""Plots of a study."""
+
+import re
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+from evaluate.plot_style import FORMATS, figure_bytes, inline_svg
+from evaluate.plots import CURVE_POINTS, curves_plot, plots_of, times_plot
+from evaluate.scene_groups import Grouping
+from evaluate.trial_frame import read_trials
+
+GROUPING = Grouping("occlusion", "occlusion", {"not occluded": ["wall"], "occluded": ["corner", "open"]})
+
+
+def test_equal_data_give_equal_files(two_methods: Path):
+    """In every format, to the byte; PDF files embed their fonts as TrueType."""
+    frame = read_trials(two_methods)
+    first, second = (curves_plot(frame).figure for _ in range(2))
+    for format_ in FORMATS:
+        assert figure_bytes(first, format_) == figure_bytes(second, format_)
+    assert b"/FontFile2" in figure_bytes(first, "pdf")
+    assert b"/Type3" not in figure_bytes(first, "pdf")
+
+
+def test_plots_without_solved_runs(two_methods: Path):
+    """Times are plotted where there are any; success always."""
+    frame = read_trials(two_methods)
+    assert [plot.name for plot in plots_of(frame, [GROUPING])] == ["times", "solved-within", "success"]
+    unsolved = frame.filter(~pl.col("solved"))
+    assert [plot.name for plot in plots_of(unsolved, [GROUPING])] == ["success"]
+
+
+def test_boxes_hold_solved_runs_without_subgoal_time(two_methods: Path):
+    """Of Btl in `corner` the box spans 0.25 s to 0.45 s; A has none there, for it solved nothing."""
+    axes = times_plot(read_trials(two_methods)).figure.axes
+    by_title = {ax.get_title(): ax for ax in axes}
+    medians = [line.get_ydata()[0] for line in by_title["corner"].lines if line.get_linewidth() == pytest.approx(1.6)]
+    assert medians == [pytest.approx(0.35)]
+
+
+def test_curves_end_at_the_share_of_runs_solved(two_methods: Path):
+    """A solves 3 of 5 runs, Btl 3 of 4, and no curve is longer than the eye can follow."""
+    lines = curves_plot(read_trials(two_methods)).figure.axes[0].lines
+    assert [line.get_ydata()[-1] for line in lines] == [0.6, 0.75]
+    assert all(len(line.get_xdata()) <= CURVE_POINTS + 2 for line in lines)
+
+
+def test_inline_figures_share_no_ids(two_methods: Path):
+    """Every reference of an inline figure leads to an element of the same figure."""
+    frame = read_trials(two_methods)
+    svg = inline_svg(curves_plot(frame).figure, "one")
+    ids = set(re.findall(r'\bid="([^"]*)"', svg))
+    references = set(re.findall(r'(?:href="#|url\(#)([^")]*)', svg))
+    assert ids
+    assert references
+    assert references <= ids
+    assert all(name.startswith("one-") for name in ids)
+    assert "<!--" not in svg
