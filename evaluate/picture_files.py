@@ -176,9 +176,9 @@ def _sheet(picture: Picture) -> Drawing:
 
 def _heading(subjects: Sequence[Subject], good: int) -> str:
     kinds = {subject.kind for subject in subjects}
-    kind = f"{kinds.pop()}s" if len(kinds) == 1 else "pictures"
-    praise = {"levels": "solvable", "scenes": "valid", "plans": "verified"}.get(kind, "good")
-    return f"{len(subjects)} {kind}, {good} {praise}"
+    kind = kinds.pop() if len(kinds) == 1 else "picture"
+    praise = {"level": "solvable", "scene": "valid", "plan": "verified"}.get(kind, "good")
+    return f"{len(subjects)} {kind}{'' if len(subjects) == 1 else 's'}, {good} {praise}"
 
 
 def _still(picture: Picture) -> None:
