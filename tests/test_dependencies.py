@@ -31,11 +31,12 @@ HOMES = {
         "pcg/wrappers.py",
     },
     "jinja2": {"converter/viewer_page.py", "evaluate/report_html.py"},
-    "matplotlib": {"evaluate/plot_style.py", "evaluate/plots.py", "pcg/learning_curve.py"},
+    "matplotlib": {"evaluate/expressive_range.py", "evaluate/plot_style.py", "evaluate/plots.py", "pcg/learning_curve.py"},
     "numba": {
         "pcg/random_kernel.py",
         "pcg/solver_kernel.py",
         "pcg/statistics_kernel.py",
+        "planner/contact_kernel.py",
         "planner/kernel.py",
         "planner/rrt_connect.py",
         "planner/shortcut.py",
