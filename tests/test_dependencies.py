@@ -31,7 +31,12 @@ HOMES = {
         "pcg/wrappers.py",
     },
     "jinja2": {"converter/viewer_page.py", "evaluate/report_html.py"},
-    "matplotlib": {"evaluate/expressive_range.py", "evaluate/plot_style.py", "evaluate/plots.py", "pcg/learning_curve.py"},
+    "matplotlib": {
+        "evaluate/expressive_range.py",
+        "evaluate/plot_style.py",
+        "evaluate/plots.py",
+        "pcg/learning_curve.py",
+    },
     "numba": {
         "pcg/random_kernel.py",
         "pcg/solver_kernel.py",
