@@ -84,6 +84,12 @@ class ObstacleSet:
         boxes = self.boxes + np.concatenate([by, by])
         return type(self)(self.vertices + by, self.first, self.rho, boxes, self.corners + by, self.normals)
 
+    def joined(self, other: Self, by: FloatArray) -> Self:
+        """These obstacles and those of `other` translated by the vector `by` (2,) [m]; what searches do most often."""
+        arrays = kernel.joined(*self.arrays, *other.arrays, by)
+        corners = np.concatenate([self.corners, other.corners + by])
+        return type(self)(*arrays, corners, np.concatenate([self.normals, other.normals]))
+
     def with_free_corners(self) -> Self:
         """The same obstacles; corners that lie in one of them are dropped."""
         free = kernel.points_free(self.corners, *self.arrays)

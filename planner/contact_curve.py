@@ -10,48 +10,13 @@ one of their lines and circles. Between two such points all of it is free or non
 No grasp is lost, however short its stretch: in a corridor as wide as the agent it is a single point.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from converter.scene import NUMERIC_SLACK, Body
 from converter.shape import FloatArray
 from planner.configuration_space import ObstacleSet
+from planner.contact_kernel import crossings
 from planner.kernel import points_free
-
-
-@dataclass(frozen=True, eq=False)
-class _Border:
-    """Lines and circles that contain the borders of some obstacles.
-
-    Attributes:
-        normals: (n, 2) unit normals of the lines.
-        offsets: (n,) [m]: the lines are normal . x = offset.
-        centres: (m, 2) [m] of the circles.
-        radii: (m,) [m].
-    """
-
-    normals: FloatArray
-    offsets: FloatArray
-    centres: FloatArray
-    radii: FloatArray
-
-    @classmethod
-    def of(cls, obstacles: ObstacleSet) -> "_Border":
-        owner = np.repeat(np.arange(len(obstacles)), np.diff(obstacles.first))
-        following = np.arange(1, len(owner) + 1)
-        following[obstacles.first[1:] - 1] = obstacles.first[:-1]
-        edges = obstacles.vertices[following] - obstacles.vertices
-        lengths = np.hypot(*edges.T)
-        proper = lengths > 0
-        normals = np.column_stack([edges[:, 1], -edges[:, 0]])[proper] / lengths[proper, None]
-        rho = obstacles.rho[owner]
-        return cls(
-            normals,
-            (normals * obstacles.vertices[proper]).sum(axis=1) + rho[proper],
-            obstacles.vertices[rho > 0],
-            rho[rho > 0],
-        )
 
 
 class ContactCurve:
@@ -66,6 +31,7 @@ class ContactCurve:
             [piece + np.array([start, 0, 0, 0, 0]) for piece, start in zip(knots, lengths, strict=False)]
         )
         self._interior = ObstacleSet.of(body.cores, [reach - NUMERIC_SLACK for reach in reaches])
+        self._box = self._surroundings()
         self.length = float(lengths[-1])
 
     def at(self, arc_length: FloatArray) -> FloatArray:
@@ -80,9 +46,9 @@ class ContactCurve:
         Args:
             obstacles: Of the agent, relative to the object's position, without the object itself.
         """
-        blockers = ObstacleSet.union([obstacles.near(self._box()), self._interior])
-        border = _Border.of(blockers)
-        cuts = np.unique(np.concatenate([self._knots[:, 0], *(_crossings(*p, border) for p in self._pieces())]))
+        blockers = obstacles.near(self._box).joined(self._interior, np.zeros(2))
+        crossed = crossings(self._knots, blockers.vertices, blockers.first, blockers.rho)
+        cuts = np.unique(np.concatenate([self._knots[:, 0], crossed]))
         free = points_free(self.at((cuts[1:] + cuts[:-1]) / 2), *blockers.arrays)
         starts_free, ends_free = free & ~np.r_[False, free[:-1]], free & ~np.r_[free[1:], False]
         return np.column_stack([cuts[:-1][starts_free], cuts[1:][ends_free]])
@@ -104,12 +70,7 @@ class ContactCurve:
         arc_lengths = np.concatenate([stretches[owner, 1] - (ends[owner] - spread), extra])
         return rng.permutation(self.at(arc_lengths))
 
-    def _pieces(self) -> list[tuple[FloatArray, FloatArray]]:
-        """Consecutive knots with some curve between them."""
-        lengths = np.diff(self._knots[:, 0])
-        return [(self._knots[i], self._knots[i + 1]) for i in np.flatnonzero(lengths > 0)]
-
-    def _box(self) -> FloatArray:
+    def _surroundings(self) -> FloatArray:
         nearest, reach = self._knots[:, 1:3], self._knots[:, 4].max()
         return np.array([nearest.min(axis=0) - reach, nearest.max(axis=0) + reach])
 
@@ -135,45 +96,3 @@ def _knots(core: FloatArray, reach: float) -> FloatArray:
         position += reach * (following - normals[i])
     rows.append([position, *core[0], normals[0] + 2 * np.pi, reach])
     return np.array(rows)
-
-
-def _crossings(knot: FloatArray, following: FloatArray, border: _Border) -> FloatArray:
-    """Arc lengths at which the curve between two knots meets a line or circle of `border`; some may miss it."""
-    start, angle, reach = knot[0], knot[3], knot[4]
-    if angle == following[3]:
-        normal = np.array([np.cos(angle), np.sin(angle)])
-        origin = knot[1:3] + reach * normal
-        lengths = _on_line(origin, np.array([-normal[1], normal[0]]), border)
-        length = following[0] - start
-    else:
-        lengths = reach * np.mod(_on_circle(knot[1:3], reach, border) - angle, 2 * np.pi)
-        length = reach * (following[3] - angle)
-    return np.asarray(start + lengths[(lengths > 0) & (lengths < length)])
-
-
-def _on_line(origin: FloatArray, direction: FloatArray, border: _Border) -> FloatArray:
-    """Parameters t [m] at which origin + t direction, a unit vector, meets the border."""
-    speeds = border.normals @ direction
-    crossing = np.abs(speeds) > 1e-12
-    with_lines = (border.offsets - border.normals @ origin)[crossing] / speeds[crossing]
-    to_centres = border.centres - origin
-    middles = to_centres @ direction
-    halves = np.sqrt(np.maximum(border.radii**2 - (to_centres**2).sum(axis=1) + middles**2, 0.0))
-    return np.concatenate([with_lines, middles - halves, middles + halves])
-
-
-def _on_circle(centre: FloatArray, radius: float, border: _Border) -> FloatArray:
-    """Angles [rad] at which the circle meets the border."""
-    to_centres = border.centres - centre
-    distances = np.maximum(np.hypot(*to_centres.T), 1e-12)
-    cosines = np.concatenate(
-        [
-            (border.offsets - border.normals @ centre) / radius,
-            (radius**2 + distances**2 - border.radii**2) / (2 * radius * distances),
-        ]
-    )
-    directions = np.concatenate([border.normals, to_centres])
-    middles = np.arctan2(directions[:, 1], directions[:, 0])
-    meets = np.abs(cosines) <= 1
-    halves = np.arccos(cosines[meets])
-    return np.concatenate([middles[meets] - halves, middles[meets] + halves])

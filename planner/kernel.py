@@ -132,6 +132,33 @@ def segment_free(
 
 
 @njit(cache=True)
+def joined(
+    vertices: FloatArray,
+    first: IntArray,
+    rho: FloatArray,
+    boxes: FloatArray,
+    more_vertices: FloatArray,
+    more_first: IntArray,
+    more_rho: FloatArray,
+    more_boxes: FloatArray,
+    by: FloatArray,
+) -> tuple[FloatArray, IntArray, FloatArray, FloatArray]:
+    """An obstacle set and another one translated by the vector `by` (2,) [m]."""
+    n, m = len(rho), len(vertices)
+    all_vertices = np.empty((m + len(more_vertices), 2))
+    all_vertices[:m] = vertices
+    all_vertices[m:] = more_vertices + by
+    all_first = np.empty(n + len(more_rho) + 1, np.int64)
+    all_first[: n + 1] = first
+    all_first[n:] = more_first + m
+    all_boxes = np.empty((n + len(more_rho), 4))
+    all_boxes[:n] = boxes
+    all_boxes[n:, :2] = more_boxes[:, :2] + by
+    all_boxes[n:, 2:] = more_boxes[:, 2:] + by
+    return all_vertices, all_first, np.concatenate((rho, more_rho)), all_boxes
+
+
+@njit(cache=True)
 def points_free(
     points: FloatArray, vertices: FloatArray, first: IntArray, rho: FloatArray, boxes: FloatArray
 ) -> BoolArray:

@@ -41,11 +41,7 @@ class _Grasp:
 
     def leads_to(self, positions: FloatArray) -> BoolArray:
         """For each of `positions` (n, 2) whether the object can be carried there in this grasp."""
-        ends = positions + self.offset
-        possible = self._space.points_free(ends)
-        if possible.any():
-            possible[possible] = self._tree.reaches(ends[possible])
-        return possible
+        return self._tree.reaches(positions + self.offset)
 
     def nearby(self, positions: FloatArray) -> FloatArray:
         """For each of `positions` (n, 2) a position close to it that the object can be carried to in this grasp.
@@ -92,8 +88,9 @@ class ExactPickPlace:
         found = np.zeros(len(subgoals), dtype=bool)
         for grasp in self._reachable_grasps(index):
             missing = subgoals[~found]
-            is_near = (np.abs(grasp.nearby(missing) - missing) <= reach).all(axis=1)
-            found[~found] = is_near | grasp.leads_to(missing)
+            led = np.asarray((np.abs(grasp.nearby(missing) - missing) <= reach).all(axis=1))
+            led[~led] = grasp.leads_to(missing[~led])
+            found[~found] = led
         return found
 
     def pick_place(self, index: int, region: Region) -> PickPlace | None:

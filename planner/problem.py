@@ -89,8 +89,7 @@ class Problem:
 
     def agent_space(self, configuration: Configuration, held: int | None = None) -> ConfigurationSpace:
         """Where the agent's centre may be; a `held` object is no obstacle."""
-        others = self._others(self.agent_objects, configuration, held)
-        return ConfigurationSpace(ObstacleSet.union([self.agent_walls, *others]), self.scene.bounds)
+        return self._space(self.agent_walls, self.agent_objects, configuration, held)
 
     def grasp_obstacles(self, configuration: Configuration, index: int) -> ObstacleSet:
         """Obstacles of the agent's centre relative to that of object `index`, which is none itself."""
@@ -98,8 +97,7 @@ class Problem:
 
     def object_space(self, configuration: Configuration, index: int) -> ConfigurationSpace:
         """Where the centre of object `index` may be; the agent is no obstacle."""
-        others = self._others(self.object_objects[index], configuration, index)
-        return ConfigurationSpace(ObstacleSet.union([self.object_walls[index], *others]), self.scene.bounds)
+        return self._space(self.object_walls[index], self.object_objects[index], configuration, index)
 
     def wall_space(self, index: int) -> ConfigurationSpace:
         """Where the centre of object `index` might be if it were the only object."""
@@ -116,8 +114,7 @@ class Problem:
         def at(grasp: FloatArray) -> ConfigurationSpace:
             lower = np.maximum(agent.bounds[0], carried.bounds[0] + grasp)
             upper = np.minimum(agent.bounds[1], carried.bounds[1] + grasp)
-            obstacles = ObstacleSet.union([agent.obstacles, carried.obstacles.moved(grasp)])
-            return ConfigurationSpace(obstacles, np.array([lower, upper]))
+            return ConfigurationSpace(agent.obstacles.joined(carried.obstacles, grasp), np.array([lower, upper]))
 
         return at
 
@@ -128,10 +125,14 @@ class Problem:
         ]
         return ObstacleSet.union([self._sight_walls, *others])
 
-    def _others(
-        self, relative: list[ObstacleSet], configuration: Configuration, ignored: int | None
-    ) -> list[ObstacleSet]:
-        return [relative[k].moved(configuration.objects[k]) for k in range(self.n_objects) if k != ignored]
+    def _space(
+        self, obstacles: ObstacleSet, relative: list[ObstacleSet], configuration: Configuration, ignored: int | None
+    ) -> ConfigurationSpace:
+        """The space among fixed `obstacles` and the objects, which are `relative` to their positions."""
+        for k in range(self.n_objects):
+            if k != ignored:
+                obstacles = obstacles.joined(relative[k], configuration.objects[k])
+        return ConfigurationSpace(obstacles, self.scene.bounds)
 
 
 RelativeObstacles = Callable[[Body], ObstacleSet]

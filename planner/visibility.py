@@ -26,7 +26,7 @@ from numba import njit
 from converter.polyline import path_length
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace
-from planner.kernel import BoolArray, IntArray, segment_free
+from planner.kernel import BoolArray, IntArray, points_free_within, segment_free
 from planner.motion import MotionResult
 
 
@@ -76,6 +76,27 @@ def _shortest_tree(
 
 
 @njit(cache=True)
+def _grown(
+    start: FloatArray,
+    corners: FloatArray,
+    tangents: FloatArray,
+    bounds: FloatArray,
+    vertices: FloatArray,
+    first: IntArray,
+    rho: FloatArray,
+    boxes: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
+    """`points`, `normals`, `distance` and `previous` of a tree; `tangents` (k, 4) are the normals of all `corners`."""
+    free = np.flatnonzero(points_free_within(corners, bounds, vertices, first, rho, boxes))
+    points, normals = np.empty((len(free) + 1, 2)), np.zeros((len(free) + 1, 4))
+    points[0] = start
+    points[1:] = corners[free]
+    normals[1:] = tangents[free]
+    distance, previous = _shortest_tree(points, normals, vertices, first, rho, boxes)
+    return points, normals, distance, previous
+
+
+@njit(cache=True)
 def _last_turn(
     x: float,
     y: float,
@@ -105,14 +126,16 @@ def _seen(
     points: FloatArray,
     normals: FloatArray,
     distance: FloatArray,
+    bounds: FloatArray,
     vertices: FloatArray,
     first: IntArray,
     rho: FloatArray,
     boxes: FloatArray,
 ) -> BoolArray:
-    """For each of `goals` (m, 2) whether a point of the tree sees it."""
+    """For each of `goals` (m, 2) whether it is free and a point of the tree sees it."""
+    free = points_free_within(goals, bounds, vertices, first, rho, boxes)
     seen = np.zeros(len(goals), np.bool_)
-    for k in range(len(goals)):
+    for k in np.flatnonzero(free):
         x, y = goals[k, 0], goals[k, 1]
         for i in range(len(points)):
             if distance[i] == np.inf or _enters(normals, i, x - points[i, 0], y - points[i, 1]):
@@ -158,18 +181,16 @@ class ShortestPathTree:
 
     def __init__(self, space: ConfigurationSpace, start: FloatArray) -> None:
         obstacles = space.obstacles
-        free = space.points_free(obstacles.corners)
         self.space = space
-        self._points = np.concatenate([start[None], obstacles.corners[free]])
-        self._normals = np.concatenate([np.zeros((1, 4)), obstacles.normals[free]])
-        self._distance, self._previous = _shortest_tree(self._points, self._normals, *obstacles.arrays)
+        self._points, self._normals, self._distance, self._previous = _grown(
+            start, obstacles.corners, obstacles.normals, space.bounds, *obstacles.arrays
+        )
 
     def reaches(self, goals: FloatArray) -> BoolArray:
         """For each of `goals` (n, 2) whether a free path leads to it."""
-        reached = self.space.points_free(goals)
         obstacles = self.space.obstacles.arrays
-        reached[reached] = _seen(goals[reached], self._points, self._normals, self._distance, *obstacles)
-        return reached
+        goals = np.ascontiguousarray(goals)
+        return np.asarray(_seen(goals, self._points, self._normals, self._distance, self.space.bounds, *obstacles))
 
     def path_to(self, goal: FloatArray) -> FloatArray | None:
         """The shortest path (n, 2) [m] from the start to `goal` (2,), or None if there is none."""
