@@ -169,8 +169,10 @@ def study_table(study: Study, cells: dict[tuple[str, str], Cell]) -> str:
     presets = ", ".join(f"`{preset}`" for preset in dict.fromkeys(m.settings.preset for m in study.methods))
     limits = ", ".join(f"{limit:g} s" for limit in dict.fromkeys(m.settings.time_limit for m in study.methods))
     note = (
-        f"Planning time [s], mean ± standard deviation over the solved runs of {len(study.seeds)} seeds, and the "
-        f"percentage solved where it is below 100. A run is solved if its plan passes the independent verification. "
+        f"Planning time [s], mean (standard deviation) over the solved runs of {len(study.seeds)} seeds, and the "
+        f"percentage solved where it is below 100; - where none is solved, nothing where none was run. Bold: the "
+        f"largest share solved, and of these the least mean. A run is solved if its plan passes the independent "
+        f"verification. "
         f"Settings {presets}, time limit {limits}; last row: runs solved, with the 95 % Wilson interval."
     )
     scenes = [study.label(scene.name, scene.preset) for scene in study.scenes]

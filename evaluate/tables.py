@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from evaluate.number_text import three_digits
 from evaluate.statistics import deviation, mean, wilson_interval
+from evaluate.summary import Summary, best_of, time_text
+from evaluate.table import BLANK, Entry, Table, as_markdown
 
 
 @dataclass(frozen=True)
@@ -67,14 +68,10 @@ class Cell:
         """Standard deviation of the planning time over the solved trials [s]."""
         return deviation(self.times)
 
-    def text(self) -> str:
-        """`mean ± deviation`, with the percentage solved if it is below 100; `-` if none was solved."""
-        average, spread = self.mean_time, self.time_deviation
-        if average is None or spread is None:
-            return "-"
-        # 99.97 % must not be rounded to 100 %.
-        share = "" if self.solved == self.trials else f" ({min(100 * self.rate, 99.9):.3g} %)"
-        return f"{three_digits(average)} ± {three_digits(spread)}{share}"
+    @property
+    def summary(self) -> Summary:
+        """The same without the single times."""
+        return Summary(self.trials, self.solved, self.mean_time, self.time_deviation)
 
 
 def by_scene_and_method(results: Iterable[Result]) -> dict[tuple[str, str], Cell]:
@@ -104,17 +101,20 @@ def markdown(
 ) -> str:
     """A Markdown document with one row per scene, one column per method and a last row with the share solved."""
     totals = by_method(cells)
-    rows = [[scene, *(cells.get((scene, method), Cell()).text() for method in methods)] for scene in scenes]
-    rows.append(["**solved**", *(_share(totals.get(method, Cell())) for method in methods)])
-    head = ["scene", *methods]
-    lines = [_row(head), _row(["---", *("---:" for _ in methods)]), *(_row(row) for row in rows)]
-    return "\n".join([f"# {title}", "", note, "", *lines, ""])
+    rows = [_scene_row(scene, methods, cells) for scene in scenes]
+    rows.append((Entry("solved"), *(_share(totals.get(method, Cell())) for method in methods)))
+    return as_markdown(Table("study", title, note, ("scene", *methods), tuple(rows)))
 
 
-def _share(cell: Cell) -> str:
+def _scene_row(scene: str, methods: Sequence[str], cells: Mapping[tuple[str, str], Cell]) -> tuple[Entry, ...]:
+    ran = {method: cells[scene, method].summary for method in methods if (scene, method) in cells}
+    best = best_of(ran)
+    entries = (Entry(time_text(ran[m]), bold=m in best) if m in ran else BLANK for m in methods)
+    return Entry(scene), *entries
+
+
+def _share(cell: Cell) -> Entry:
+    if not cell.trials:
+        return BLANK
     low, high = cell.rate_interval
-    return f"{cell.solved}/{cell.trials} ({100 * low:.0f}-{100 * high:.0f} %)"
-
-
-def _row(texts: Sequence[str]) -> str:
-    return "| " + " | ".join(text.replace("|", "\\|") for text in texts) + " |"
+    return Entry(f"{cell.solved}/{cell.trials} ({100 * low:.0f} to {100 * high:.0f} %)")

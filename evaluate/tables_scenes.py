@@ -2,46 +2,17 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import polars as pl
 
-from evaluate.number_text import three_digits
 from evaluate.published import TIME_COLUMNS, PublishedTime, scene_key
 from evaluate.scene_statistics import SceneStatistics
+from evaluate.summary import Summary, best_of, time_text
 from evaluate.table import BLANK, Entry, Table
 from evaluate.trial_frame import names_in
 
 PAPER = "(paper)"
 """Behind a method's name: the column of its published numbers."""
-
-
-@dataclass(frozen=True)
-class Summary:
-    """The trials of one method on one scene; means are over the solved ones, None without any.
-
-    Attributes:
-        trials: How many there were.
-        solved: How many ended with a verified plan.
-        mean: Planning time [s].
-        deviation: Its sample standard deviation [s], 0 for one trial.
-        net_mean: Mean planning time without computing subgoals [s]; None for methods that do not tell.
-        pick_places: Mean number of pick-places.
-        path_length: Mean way of the agent [m].
-    """
-
-    trials: int
-    solved: int
-    mean: float | None
-    deviation: float | None
-    net_mean: float | None
-    pick_places: float | None
-    path_length: float | None
-
-    @property
-    def percent(self) -> float:
-        """Share of trials solved, 0..100."""
-        return 100 * self.solved / self.trials
 
 
 Summaries = Mapping[tuple[str, str], Summary]
@@ -74,7 +45,7 @@ def times_table(frame: pl.DataFrame, published: Mapping[tuple[str, str], Publish
     heads = [head for method in methods for head in ([method, f"{method} {PAPER}"] if method in known else [method])]
     rows = []
     for scene in scenes:
-        best = _best(scene, methods, cells)
+        best = best_of({method: cells[scene, method] for method in methods if (scene, method) in cells})
         row = [Entry(scene)]
         for method in methods:
             row.append(_time_entry(method, cells.get((scene, method)), bold=method in best))
@@ -152,16 +123,6 @@ def facts_table(facts: Mapping[str, SceneStatistics]) -> Table:
 _YES = {True: "yes", False: "no"}
 
 
-def time_text(cell: Summary, *, net: bool = False) -> str:
-    """`mean (deviation)`, with the net time in brackets if wanted, and the percentage solved if it is below 100."""
-    if cell.mean is None or cell.deviation is None:
-        return "-"
-    brackets = f" [{three_digits(cell.net_mean)}]" if net and cell.net_mean is not None else ""
-    # 99.97 % must not be rounded to 100 %.
-    share = "" if cell.solved == cell.trials else f" {min(cell.percent, 99.9):.3g}%"
-    return f"{three_digits(cell.mean)} ({three_digits(cell.deviation)}){brackets}{share}"
-
-
 def _time_entry(method: str, cell: Summary | None, *, bold: bool) -> Entry:
     if cell is None:
         return BLANK
@@ -178,18 +139,6 @@ def _published_entry(published: PublishedTime | None) -> Entry:
     brackets = "" if net is None else f" [{net:g}]"
     share = "" if published.percent == 100 else f" {published.percent:g}%"
     return Entry(f"{published.mean:g}{deviation}{brackets}{share}", value=published.mean)
-
-
-def _best(scene: str, methods: Sequence[str], cells: Summaries) -> set[str]:
-    """The methods that are shown as the best of a scene; none if there is nothing to compare."""
-    ran = {method: cells[scene, method] for method in methods if (scene, method) in cells}
-    solved = {method: cell for method, cell in ran.items() if cell.mean is not None}
-    if len(ran) < 2 or not solved:
-        return set()
-    most = max(cell.percent for cell in solved.values())
-    means = {method: cell.mean or 0.0 for method, cell in solved.items() if cell.percent == most}
-    least = min(means.values())
-    return {method for method, value in means.items() if three_digits(value) == three_digits(least)}
 
 
 def _mean_entry(value: float | None, *, bold: bool) -> Entry:

@@ -115,7 +115,7 @@ def test_the_table_names_its_preset(study: Study):
     text = study_table(study, {("small-room", "Rnd+FPR"): Cell(5, [0.5, 0.5])})
     assert "of 5 seeds" in text
     assert "Settings `fast`, time limit 60 s;" in text
-    assert "| small-room | 0.500 ± 0 (40 %) |" in text
+    assert "| small-room | 0.500 (0) 40% |" in text
 
 
 def test_scenes_in_two_geometries_are_told_apart(study: Study, small_room: Scene):

@@ -1,5 +1,6 @@
 """Tables of a study."""
 
+from evaluate.summary import time_text
 from evaluate.tables import Cell, Result, by_method, by_scene_and_method, markdown
 
 RESULTS = [
@@ -27,7 +28,7 @@ def test_totals_add_up():
 
 
 def test_markdown_table():
-    """Deviation beside the mean, the percentage only below 100, a dash for nothing solved or nothing run."""
+    """Deviation beside the mean, the percentage only below 100, a dash for nothing solved, nothing if not run."""
     text = markdown("smoke", "A note.", ["wall", "maze"], ["Rnd+FPR", "Rnd+R"], by_scene_and_method(RESULTS))
     assert text.splitlines() == [
         "# smoke",
@@ -36,16 +37,16 @@ def test_markdown_table():
         "",
         "| scene | Rnd+FPR | Rnd+R |",
         "| --- | ---: | ---: |",
-        "| wall | 2.00 ± 1.41 | 0.500 ± 0 (50 %) |",
-        "| maze | - | - |",
-        "| **solved** | 2/2 (34-100 %) | 1/3 (6-79 %) |",
+        "| wall | **2.00 (1.41)** | 0.500 (0) 50% |",
+        "| maze |  | - |",
+        "| solved | 2/2 (34 to 100 %) | 1/3 (6 to 79 %) |",
     ]
 
 
 def test_nearly_all_is_not_all():
     """A rate below 100 % is never printed as 100 %."""
     cell = Cell(trials=10_000, times=[1.0] * 9_999)
-    assert cell.text() == "1.00 ± 0 (99.9 %)"
+    assert time_text(cell.summary) == "1.00 (0) 99.9%"
 
 
 def test_names_cannot_break_the_table():

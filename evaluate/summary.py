@@ -1,0 +1,58 @@
+"""What became of the trials of one method on one scene, and how tables show it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from evaluate.number_text import three_digits
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The trials of one method on one scene; means are over the solved ones, None without any.
+
+    Attributes:
+        trials: How many there were.
+        solved: How many ended with a verified plan.
+        mean: Planning time [s].
+        deviation: Its sample standard deviation [s], 0 for one trial.
+        net_mean: Mean planning time without computing subgoals [s]; None for methods that do not tell.
+        pick_places: Mean number of pick-places.
+        path_length: Mean way of the agent [m].
+    """
+
+    trials: int
+    solved: int
+    mean: float | None
+    deviation: float | None
+    net_mean: float | None = None
+    pick_places: float | None = None
+    path_length: float | None = None
+
+    @property
+    def percent(self) -> float:
+        """Share of trials solved, 0..100."""
+        return 100 * self.solved / self.trials
+
+
+def time_text(cell: Summary, *, net: bool = False) -> str:
+    """`mean (deviation)`, with the net time in brackets if wanted, and the percentage solved if it is below 100."""
+    if cell.mean is None or cell.deviation is None:
+        return "-"
+    brackets = f" [{three_digits(cell.net_mean)}]" if net and cell.net_mean is not None else ""
+    # 99.97 % must not be rounded to 100 %.
+    share = "" if cell.solved == cell.trials else f" {min(cell.percent, 99.9):.3g}%"
+    return f"{three_digits(cell.mean)} ({three_digits(cell.deviation)}){brackets}{share}"
+
+
+def best_of(summaries: Mapping[str, Summary]) -> set[str]:
+    """The methods that a table shows as the best: the largest share solved, and of these the least mean time.
+
+    None if there are not two to compare, or none solved anything; several if their times look the same.
+    """
+    solved = {method: summary for method, summary in summaries.items() if summary.mean is not None}
+    if len(summaries) < 2 or not solved:
+        return set()
+    most = max(summary.percent for summary in solved.values())
+    means = {method: summary.mean or 0.0 for method, summary in solved.items() if summary.percent == most}
+    least = three_digits(min(means.values()))
+    return {method for method, value in means.items() if three_digits(value) == least}
