@@ -25,7 +25,7 @@ ASPECT = 1.5
 GAP = 0.08
 """Between cards and around the sheet, in widths of a card's picture."""
 
-TEXT = 0.075
+TEXT = 0.068
 LINE_HEIGHT = 0.11
 HEADING = 0.14
 """Heights of the text, of a line of it, and of the heading's text, in the same unit."""

@@ -148,5 +148,5 @@ def _judge_plan(scene: Scene, plan: Plan) -> Verdict:
         return Verdict(plan.status.value, good=False)
     if violations := verify(scene, plan):
         return Verdict(violations[0].message, good=False)
-    places = f"{plan.pick_places} pick-place{'' if plan.pick_places == 1 else 's'}"
-    return Verdict(f"verified, {places}, {plan.path_length:.1f} m", good=True)
+    picks = f"{plan.pick_places} pick{'' if plan.pick_places == 1 else 's'}"
+    return Verdict(f"verified, {picks}, {plan.path_length:.1f} m", good=True)
