@@ -96,6 +96,9 @@ def mjcf_text(scene: Scene, movable: Movable = Movable.FREE) -> str:
     )
     # With several contact points a pair, MuJoCo 4.0 reports cylinders up to half a millimetre too deep.
     _add(option, "flag", multiccd="disable")
+    # Together with the directional light no more than white, so that colours keep their look.
+    dim = {"ambient": "0.35 0.35 0.35", "diffuse": "0.35 0.35 0.35", "specular": "0 0 0"}
+    _add(_add(root, "visual"), "headlight", dim)
     _add_defaults(root)
     meshes = _Meshes(_add(root, "asset"))
     world = _add(root, "worldbody")
@@ -128,7 +131,7 @@ def _add_room(world: ET.Element, scene: Scene) -> None:
     middle = _numbers([*centre, 0.0])
     distance = 1.1 * half.max() / math.tan(math.radians(_FIELD_OF_VIEW / 2))
     above = _numbers([*centre, distance])
-    _add(world, "light", type="directional", pos=above, dir="0 0 -1")
+    _add(world, "light", type="directional", pos=above, dir="0.3 -0.5 -1", diffuse="0.3 0.3 0.3")
     _add(world, "camera", name="top", pos=above, fovy=_number(_FIELD_OF_VIEW))
     _add(world, "geom", name=FLOOR, type="plane", pos=middle, size=_numbers([*half, 0.1]), rgba=_color(PAPER.floor))
     place, size = scene.goal.position, scene.goal.size
