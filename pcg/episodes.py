@@ -14,7 +14,7 @@ from pcg.grid import BoolArray
 from pcg.level import TileArray
 from pcg.representation import KEEP, REPRESENTATIONS, IntArray, Representation
 from pcg.reward import Control, FloatArray, RewardSettings, distance, reward
-from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, VerdictCache, measure
+from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, edit, make_judge, measure
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,12 @@ class EpisodeSettings:
     representation: str = "narrow"
     rows: int = 10
     columns: int = 10
-    change_share: float = 0.2
-    step_share: float = 2.0
+    change_share: float = 0.3
+    step_share: float = 3.0
     thing_share: float = 0.01
     wall_spread: float = 0.05
     reward: RewardSettings = field(default_factory=RewardSettings)
-    spare_crates: int = 1
+    spare_crates: int = 0
     max_states: int = 5_000
 
     def __post_init__(self) -> None:
@@ -129,7 +129,7 @@ class Episodes:
         distance: (n,) to what is wanted.
         steps: (n,) steps done.
         changes: (n,) changes done.
-        cache: Of the solver's verdicts.
+        judge: Solves maps, with a cache of its verdicts.
     """
 
     def __init__(self, settings: EpisodeSettings, n: int, archive: TileArray | None = None) -> None:
@@ -142,8 +142,9 @@ class Episodes:
         self.distance = np.zeros(n)
         self.steps = np.zeros(n, dtype=np.int64)
         self.changes = np.zeros(n, dtype=np.int64)
-        self.cache = VerdictCache.empty()
-        self._archive = np.zeros((0, *shape), dtype=np.uint8) if archive is None else archive
+        archive = np.zeros((0, *shape), dtype=np.uint8) if archive is None else archive
+        max_crates = settings.reward.crates + settings.spare_crates
+        self.judge = make_judge(archive, max_crates, settings.max_states)
         self._representation: Representation = REPRESENTATIONS[settings.representation](shape, n)
         self._numbers = np.arange(n)
 
@@ -165,7 +166,7 @@ class Episodes:
         self.steps[episodes] = 0
         self.changes[episodes] = 0
         self._representation.begin(rng, episodes)
-        self._measure(episodes)
+        measure(self.maps, episodes, self.statistics, self.judge)
         self.distance[episodes] = distance(self.statistics[episodes], self.controls[episodes], self.settings.reward)
 
     def is_valid(self) -> BoolArray:
@@ -180,8 +181,7 @@ class Episodes:
         maps, frozen = self.maps.reshape(self.n, -1), self.frozen.reshape(self.n, -1)
         changed = (tiles != KEEP) & (tiles != maps[self._numbers, cells]) & (frozen[self._numbers, cells] == 0)
         episodes = np.flatnonzero(changed)
-        maps[episodes, cells[episodes]] = tiles[episodes]
-        self._measure(episodes)
+        edit(self.maps, episodes, cells[episodes], tiles[episodes], self.statistics, self.judge)
         after = self.distance.copy()
         after[episodes] = distance(self.statistics[episodes], self.controls[episodes], self.settings.reward)
         gained = reward(self.distance, after, self.settings.reward)
@@ -191,14 +191,3 @@ class Episodes:
         terminated = after == 0
         spent = (self.steps >= self.settings.max_steps) | (self.changes >= self.settings.max_changes)
         return Transition(gained, changed, terminated, spent & ~terminated)
-
-    def _measure(self, episodes: IntArray) -> None:
-        measure(
-            self.maps,
-            episodes,
-            self.statistics,
-            self.cache,
-            self._archive,
-            max_crates=self.settings.reward.crates + self.settings.spare_crates,
-            max_states=self.settings.max_states,
-        )

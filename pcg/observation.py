@@ -6,7 +6,7 @@ of the map, then the window's frozen cells; last the scalars of `scalars`.
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,7 @@ import numpy.typing as npt
 from pcg.episodes import Episodes, EpisodeSettings
 from pcg.grid import BoolArray
 from pcg.level import TileArray
-from pcg.representation import N_TILES
+from pcg.representation import N_TILES, IntArray
 from pcg.reward import Control
 from pcg.statistics_kernel import Column
 
@@ -37,11 +37,15 @@ def observation_size(settings: EpisodeSettings) -> int:
     return size
 
 
-def scalars(episodes: Episodes) -> Float32Array:
-    """(n, SCALARS) counts, distances, flags, controls and what is left of the budgets, most of them within -2 to 2."""
+EVERY: Final = slice(None)
+"""All episodes."""
+
+
+def scalars(episodes: Episodes, chosen: IntArray | slice = EVERY) -> Float32Array:
+    """(n, SCALARS) of the chosen episodes: counts, distances, flags, controls and what is left of the budgets, most of them within -2 to 2."""
     settings = episodes.settings
     wanted, tenth = settings.reward, settings.cells / 10
-    s, c = episodes.statistics.T, episodes.controls.T
+    s, c = episodes.statistics[chosen].T, episodes.controls[chosen].T
     walls, pushes, solved = s[Column.WALLS], s[Column.PUSHES], s[Column.SOLVABLE]
     parts = (
         np.clip(s[Column.PLAYERS] - 1, -1, 4) / 2,
@@ -66,28 +70,32 @@ def scalars(episodes: Episodes) -> Float32Array:
         c[Control.DEPENDENCY],
         c[Control.OCCLUDED] * (2 * s[Column.OCCLUDED] - 1) * solved,
         c[Control.DEPENDENCY] * (2 * s[Column.DEPENDENCY] - 1) * solved,
-        np.clip(episodes.distance / 10, 0, 2),
-        1 - episodes.changes / settings.max_changes,
-        1 - episodes.steps / settings.max_steps,
+        np.clip(episodes.distance[chosen] / 10, 0, 2),
+        1 - episodes.changes[chosen] / settings.max_changes,
+        1 - episodes.steps[chosen] / settings.max_steps,
     )
-    numbers = np.empty((episodes.n, SCALARS), dtype=np.float32)
+    numbers = np.empty((len(walls), SCALARS), dtype=np.float32)
     for column, part in enumerate(parts):
         numbers[:, column] = part
     return np.clip(numbers, -SCALAR_LIMIT, SCALAR_LIMIT, out=numbers)
 
 
-def observation_parts(episodes: Episodes) -> dict[str, npt.NDArray[Any]]:
-    """The observations of `pcg.environment`, with n as first axis: copies, not views."""
+def observation_parts(episodes: Episodes, chosen: IntArray | slice = EVERY) -> dict[str, npt.NDArray[Any]]:
+    """The observations of `pcg.environment` of the chosen episodes, these as first axis: copies, not views."""
     settings = episodes.settings
-    goal = episodes.statistics[:, Column.GOAL, None] == np.arange(settings.cells)
+    maps = episodes.maps[chosen].copy()
+    goal = np.zeros((len(maps), settings.cells), dtype=np.uint8)
+    crates = episodes.statistics[chosen, Column.GOAL]
+    known = np.flatnonzero(crates >= 0)
+    goal[known, crates[known]] = 1
     parts: dict[str, npt.NDArray[Any]] = {
-        "map": episodes.maps.copy(),
-        "frozen": episodes.frozen.copy(),
-        "goal": goal.astype(np.uint8).reshape(episodes.maps.shape),
-        "scalars": scalars(episodes),
+        "map": maps,
+        "frozen": episodes.frozen[chosen].copy(),
+        "goal": goal.reshape(maps.shape),
+        "scalars": scalars(episodes, chosen),
     }
     if episodes.representation.has_position:
-        parts["position"] = np.stack(np.divmod(episodes.representation.positions(), settings.columns), axis=1)
+        parts["position"] = np.stack(np.divmod(episodes.representation.positions()[chosen], settings.columns), axis=1)
     return parts
 
 

@@ -9,8 +9,8 @@ region of free cells it is in. A key is a 128-bit hash of the map with that regi
 not told apart (among a thousand million maps the odds are 1 in 10^20). A full slot is overwritten.
 """
 
-from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -53,24 +53,24 @@ _SOLVABLE, _PUSHES, _GOAL, _OCCLUDED, _DEPENDENCY, _CLEARANCE, _NOVELTY = (int(c
 _LOOKUPS, _HITS = 0, 1
 
 
-@dataclass(frozen=True)
-class VerdictCache:
-    """Verdicts of the solver by canonical map.
+class Judge(NamedTuple):
+    """What decides about furnished maps, as the compiled functions take it.
 
     Attributes:
-        keys: (size, 2) hashes, size a power of two.
-        verdicts: (size, 4) solvable, pushes, goal crate, dependency.
+        keys: (size, 2) hashes of canonical maps, size a power of two.
+        verdicts: (size, 4) solvable, pushes, goal crate, dependency of the maps with these keys.
         counters: Look-ups and hits so far.
+        archive: (m, rows, columns) maps that novelty is measured against, m may be 0.
+        max_crates: Maps with more crates are not solved.
+        max_states: Limit of the solver; a map that reaches it counts as unsolvable.
     """
 
     keys: WordArray
     verdicts: Int32Array
-    counters: IntArray = field(default_factory=lambda: np.zeros(2, dtype=np.int64))
-
-    @classmethod
-    def empty(cls, bits: int = 16) -> "VerdictCache":
-        """A cache of 2 ** `bits` verdicts, 32 bytes each."""
-        return cls(np.zeros((1 << bits, 2), dtype=np.uint64), np.zeros((1 << bits, 4), dtype=np.int32))
+    counters: IntArray
+    archive: TileArray
+    max_crates: int
+    max_states: int
 
     @property
     def hit_rate(self) -> float:
@@ -78,72 +78,154 @@ class VerdictCache:
         return float(self.counters[_HITS] / max(1, self.counters[_LOOKUPS]))
 
 
-def measure(
-    maps: TileArray,
-    chosen: IntArray,
-    statistics: Int32Array,
-    cache: VerdictCache,
-    archive: TileArray,
-    *,
-    max_crates: int,
-    max_states: int,
-) -> None:
+def make_judge(archive: TileArray, max_crates: int, max_states: int, bits: int = 16) -> Judge:
+    """A judge with an empty cache of 2 ** `bits` verdicts, 32 bytes each."""
+    keys, verdicts = np.zeros((1 << bits, 2), dtype=np.uint64), np.zeros((1 << bits, 4), dtype=np.int32)
+    return Judge(keys, verdicts, np.zeros(2, dtype=np.int64), archive, max_crates, max_states)
+
+
+class _Scratch(NamedTuple):
+    """Memory that is used for one map after the other.
+
+    Attributes:
+        board: (cells,) tiles with a border of wall.
+        width: Cells of a row of the board.
+        unvisited: (cells,) flags.
+        queue: (cells,) cells.
+    """
+
+    board: ByteArray
+    width: int
+    unvisited: ByteArray
+    queue: Int32Array
+
+
+@njit(cache=True)
+def _make_scratch(rows: int, columns: int) -> _Scratch:
+    size = (rows + 2) * (columns + 2)
+    board, unvisited = np.full(size, WALL, dtype=np.uint8), np.zeros(size, dtype=np.uint8)
+    return _Scratch(board, columns + 2, unvisited, np.empty(size, dtype=np.int32))
+
+
+@njit(cache=True)
+def measure(maps: TileArray, chosen: IntArray, statistics: Int32Array, judge: Judge) -> None:
     """Writes the statistics of the chosen maps.
 
     Args:
         maps: (n, rows, columns) tiles.
-        chosen: Indices of the maps to measure.
+        chosen: Numbers of the maps to measure.
         statistics: (n, len(Column)), written to.
-        cache: Looked up and filled.
-        archive: (m, rows, columns) maps that novelty is measured against, m may be 0.
-        max_crates: Maps with more crates are not solved.
-        max_states: Limit of the solver; a map that reaches it counts as unsolvable.
+        judge: Decides about furnished maps.
     """
-    _measure(maps, chosen, statistics, cache.keys, cache.verdicts, cache.counters, archive, max_crates, max_states)
-
-
-@njit(cache=True)
-def _measure(
-    maps: TileArray,
-    chosen: IntArray,
-    statistics: Int32Array,
-    keys: WordArray,
-    verdicts: Int32Array,
-    counters: IntArray,
-    archive: TileArray,
-    max_crates: int,
-    max_states: int,
-) -> None:
-    rows, columns = maps.shape[1], maps.shape[2]
-    width = columns + 2
-    board = np.full((rows + 2) * width, WALL, dtype=np.uint8)
-    unvisited = np.zeros(board.size, dtype=np.uint8)
-    queue = np.empty(board.size, dtype=np.int32)
+    scratch = _make_scratch(maps.shape[1], maps.shape[2])
     for index in chosen:
         row = statistics[index]
         row[:] = 0
-        row[_GOAL] = -1
-        for i in range(rows):
-            for j in range(columns):
-                tile = maps[index, i, j]
-                board[(i + 1) * width + j + 1] = tile
-                if tile == WALL:
-                    row[_WALLS] += 1
-                elif tile == PLAYER:
-                    row[_PLAYERS] += 1
-                elif tile == CRATE:
-                    row[_CRATES] += 1
-                elif tile == TARGET:
-                    row[_TARGETS] += 1
-        row[_REGIONS] = _count_regions(board, width, unvisited, queue)
-        row[_NOVELTY] = _novelty(maps[index], archive)
-        furnished = row[_PLAYERS] == 1 and 1 <= row[_TARGETS] <= row[_CRATES] <= max_crates and row[_REGIONS] == 1
-        if not furnished:
-            continue
-        _look_up(board, width, row, keys, verdicts, counters, max_states, unvisited, queue)
-        if row[_SOLVABLE]:
-            row[_OCCLUDED] = _is_occluded(maps[index], row[_GOAL])
-            row[_CLEARANCE] = _clearance(board, width)
+        for tile in maps[index].flat:
+            if tile != FLOOR:
+                row[_column_of(tile)] += 1
+        _fill(scratch, maps[index])
+        row[_REGIONS] = _count_regions(scratch)
+        _judge(maps[index], row, judge, scratch)
+
+
+@njit(cache=True)
+def edit(
+    maps: TileArray, chosen: IntArray, cells: IntArray, tiles: IntArray, statistics: Int32Array, judge: Judge
+) -> None:
+    """Writes one tile into each of the chosen maps and brings their statistics up to date.
+
+    Args:
+        maps: (n, rows, columns) tiles, written to.
+        chosen: (k,) numbers of the maps, each at most once.
+        cells: (k,) cells to write to, `row * columns + column`.
+        tiles: (k,) tiles to write, each different from the one that is there.
+        statistics: (n, len(Column)), true before, and after.
+        judge: Decides about furnished maps.
+    """
+    scratch = _make_scratch(maps.shape[1], maps.shape[2])
+    for k in range(chosen.size):
+        tiles_of_map, row = maps[chosen[k]], statistics[chosen[k]]
+        i, j = cells[k] // maps.shape[2], cells[k] % maps.shape[2]
+        before, after = tiles_of_map[i, j], tiles[k]
+        tiles_of_map[i, j] = after
+        if before != FLOOR:
+            row[_column_of(before)] -= 1
+        if after != FLOOR:
+            row[_column_of(after)] += 1
+        if before == WALL or after == WALL:  # noqa: PLR1714 - a tuple of two types of integers is not compiled
+            _update_regions(tiles_of_map, i, j, row, scratch)
+        _judge(tiles_of_map, row, judge, scratch)
+
+
+@njit(cache=True)
+def _column_of(tile: int) -> int:
+    """The column that counts a tile that is not floor."""
+    return (_WALLS, _PLAYERS, _CRATES, _TARGETS)[tile - 1]
+
+
+@njit(cache=True)
+def _fill(scratch: _Scratch, tiles: TileArray) -> None:
+    rows, columns = tiles.shape
+    for i in range(rows):
+        for j in range(columns):
+            scratch.board[(i + 1) * scratch.width + j + 1] = tiles[i, j]
+
+
+@njit(cache=True)
+def _judge(tiles: TileArray, row: Int32Array, judge: Judge, scratch: _Scratch) -> None:
+    """Writes the columns from SOLVABLE on; the counts are up to date."""
+    row[_SOLVABLE:] = 0
+    row[_GOAL] = -1
+    row[_NOVELTY] = _novelty(tiles, judge.archive)
+    if row[_PLAYERS] != 1 or row[_REGIONS] != 1 or not 1 <= row[_TARGETS] <= row[_CRATES] <= judge.max_crates:
+        return
+    _fill(scratch, tiles)
+    _look_up(row, judge, scratch)
+    if row[_SOLVABLE]:
+        row[_OCCLUDED] = _is_occluded(tiles, row[_GOAL])
+        row[_CLEARANCE] = _clearance(scratch)
+
+
+@njit(cache=True)
+def _update_regions(tiles: TileArray, i: int, j: int, row: Int32Array, scratch: _Scratch) -> None:
+    """Brings the number of regions up to date after a wall came to or went from cell (i, j).
+
+    If the free cells among the four neighbours are connected within the eight around the cell, their number stays the
+    same. That is so if the number of Yokoi, Toriwaki and Fukumura (1975) for four-connectivity is 1, or 0 with all
+    eight free.
+    """
+    is_free = _free_around(tiles, i, j)
+    neighbours, crossings = 0, 0
+    for k in range(0, 8, 2):
+        neighbours += is_free[k]
+        crossings += is_free[k] - is_free[k] * is_free[k + 1] * is_free[(k + 2) % 8]
+    if neighbours == 0:
+        row[_REGIONS] += -1 if tiles[i, j] == WALL else 1
+    elif crossings > 1:
+        _fill(scratch, tiles)
+        row[_REGIONS] = _count_regions(scratch)
+
+
+@njit(cache=True)
+def _free_around(tiles: TileArray, i: int, j: int) -> tuple[int, int, int, int, int, int, int, int]:
+    """Flags of the eight cells around (i, j) without wall, from the right one counter-clockwise."""
+    return (
+        _is_free(tiles, i, j + 1),
+        _is_free(tiles, i - 1, j + 1),
+        _is_free(tiles, i - 1, j),
+        _is_free(tiles, i - 1, j - 1),
+        _is_free(tiles, i, j - 1),
+        _is_free(tiles, i + 1, j - 1),
+        _is_free(tiles, i + 1, j),
+        _is_free(tiles, i + 1, j + 1),
+    )
+
+
+@njit(cache=True)
+def _is_free(tiles: TileArray, i: int, j: int) -> int:
+    inside = 0 <= i < tiles.shape[0] and 0 <= j < tiles.shape[1]
+    return 1 if inside and tiles[i, j] != WALL else 0
 
 
 @njit(cache=True)
@@ -164,44 +246,33 @@ def _visit(cell: int, width: int, unvisited: ByteArray, queue: Int32Array) -> in
 
 
 @njit(cache=True)
-def _count_regions(board: ByteArray, width: int, unvisited: ByteArray, queue: Int32Array) -> int:
-    for cell in range(board.size):
-        unvisited[cell] = board[cell] != WALL
+def _count_regions(scratch: _Scratch) -> int:
+    unvisited = scratch.unvisited
+    for cell in range(unvisited.size):
+        unvisited[cell] = scratch.board[cell] != WALL
     regions = 0
-    for cell in range(board.size):
+    for cell in range(unvisited.size):
         if unvisited[cell]:
             regions += 1
-            _visit(cell, width, unvisited, queue)
+            _visit(cell, scratch.width, unvisited, scratch.queue)
     return regions
 
 
 @njit(cache=True)
-def _look_up(
-    board: ByteArray,
-    width: int,
-    row: Int32Array,
-    keys: WordArray,
-    verdicts: Int32Array,
-    counters: IntArray,
-    max_states: int,
-    unvisited: ByteArray,
-    queue: Int32Array,
-) -> None:
+def _look_up(row: Int32Array, judge: Judge, scratch: _Scratch) -> None:
     """Writes solvability, pushes, goal crate and dependency of a furnished map, from the cache if it is there."""
-    low, high = _key(board, width, unvisited, queue)
-    slot = np.int64(low & np.uint64(keys.shape[0] - 1))
-    counters[_LOOKUPS] += 1
-    if keys[slot, 0] == low and keys[slot, 1] == high:
-        counters[_HITS] += 1
+    low, high = _key(scratch)
+    slot = np.int64(low & np.uint64(judge.keys.shape[0] - 1))
+    judge.counters[_LOOKUPS] += 1
+    if judge.keys[slot, 0] == low and judge.keys[slot, 1] == high:
+        judge.counters[_HITS] += 1
     else:
-        keys[slot, 0], keys[slot, 1] = low, high
-        verdicts[slot] = _verdict(board, width, max_states)
-    row[_SOLVABLE], row[_PUSHES], row[_GOAL], row[_DEPENDENCY] = (
-        verdicts[slot, 0],
-        verdicts[slot, 1],
-        verdicts[slot, 2],
-        verdicts[slot, 3],
-    )
+        judge.keys[slot, 0], judge.keys[slot, 1] = low, high
+        judge.verdicts[slot] = _verdict(scratch.board, scratch.width, judge.max_states)
+    row[_SOLVABLE] = judge.verdicts[slot, 0]
+    row[_PUSHES] = judge.verdicts[slot, 1]
+    row[_GOAL] = judge.verdicts[slot, 2]
+    row[_DEPENDENCY] = judge.verdicts[slot, 3]
 
 
 @njit(cache=True)
@@ -213,17 +284,17 @@ def _mixed(value: np.uint64) -> np.uint64:
 
 
 @njit(cache=True)
-def _key(board: ByteArray, width: int, unvisited: ByteArray, queue: Int32Array) -> tuple[np.uint64, np.uint64]:
+def _key(scratch: _Scratch) -> tuple[np.uint64, np.uint64]:
     """Two hashes of the board with the player's region marked instead of the player."""
-    player = 0
+    board, unvisited, player = scratch.board, scratch.unvisited, 0
     for cell in range(board.size):
         unvisited[cell] = board[cell] not in (WALL, CRATE)
         if board[cell] == PLAYER:
             player = cell
     first_of_region = board.size
-    for k in range(_visit(player, width, unvisited, queue)):
-        first_of_region = min(first_of_region, queue[k])
-    low, high = _mixed(np.uint64(first_of_region + board.size * width)), np.uint64(0)
+    for k in range(_visit(player, scratch.width, unvisited, scratch.queue)):
+        first_of_region = min(first_of_region, scratch.queue[k])
+    low, high = _mixed(np.uint64(first_of_region + board.size * scratch.width)), np.uint64(0)
     for cell in range(board.size):
         if board[cell] not in (FLOOR, PLAYER):
             code = _mixed(np.uint64(cell * 8 + board[cell] + 1))
@@ -292,7 +363,8 @@ def _is_occluded(tiles: TileArray, goal: int) -> bool:
 
 
 @njit(cache=True)
-def _clearance(board: ByteArray, width: int) -> int:
+def _clearance(scratch: _Scratch) -> int:
+    board, width = scratch.board, scratch.width
     clearance = 8
     for cell in range(board.size):
         if board[cell] == CRATE:

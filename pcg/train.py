@@ -71,7 +71,7 @@ class TrainingSettings:
     tasks: TaskDistribution = field(default_factory=TaskDistribution)
     n_envs: int = 64
     n_steps: int = 256
-    batch_size: int = 512
+    batch_size: int = 1024
     n_epochs: int = 4
     learning_rate: float = 5e-4
     entropy: float = 0.01

@@ -1,8 +1,8 @@
 """Many Sokoban environments as one: statistics in one compiled call, one cache of verdicts.
 
 `gymnasium.make_vec("Sokoban-narrow-v0", num_envs=256)` makes it, with the arguments of `SokobanEnvironment`. An episode
-that ended begins anew in the same step; its last observation is then `final_obs` in the step's information, with the
-mask `_final_obs`.
+that ended begins anew in the same step; the step's information then holds the numbers of such environments, `ended`, and
+their last observations, `final_obs`, in the same order.
 """
 
 from typing import Any
@@ -79,10 +79,10 @@ class SokobanVectorEnvironment(VectorEnv[Observation, IntArray, npt.NDArray[Any]
         """Carries out one action in each environment."""
         done = self.episodes.step(np.asarray(actions, dtype=np.int64))
         information: dict[str, Any] = {}
-        ended = done.terminated | done.truncated
-        if ended.any():
-            information = {"final_obs": observation_parts(self.episodes), "_final_obs": ended}
-            self._begin(np.flatnonzero(ended))
+        ended = np.flatnonzero(done.terminated | done.truncated)
+        if len(ended):
+            information = {"ended": ended, "final_obs": observation_parts(self.episodes, ended)}
+            self._begin(ended)
         return observation_parts(self.episodes), done.reward, done.terminated, done.truncated, information
 
     def _begin(self, numbers: IntArray) -> None:
