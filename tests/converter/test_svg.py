@@ -127,3 +127,9 @@ def test_equal_drawings_give_equal_text(small_room: Scene):
     first, second = (svg_text(scene_drawing(small_room), 600, title="room") for _ in range(2))
     assert first == second
     assert not re.search(r"-0[^.\d]", first)
+
+
+def test_the_picture_of_a_scene_is_as_it_was(small_room: Scene):
+    """Every change of the look or of the text shows here; `tests/golden/scene.svg` is the accepted one."""
+    golden = Path(__file__).parents[1] / "golden" / "scene.svg"
+    assert svg_text(scene_drawing(small_room), 600, title="small-room") == golden.read_text(encoding="utf-8")

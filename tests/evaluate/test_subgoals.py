@@ -76,3 +76,11 @@ def test_an_object_out_of_reach_has_no_subgoals(small_room: Scene):
     closed = replace(far, walls=(wall, *(replace(wall, name=f"{y}").at(np.array([1.0, y])) for y in (-1.9, 1.9))))
     with pytest.raises(InputError, match="the agent cannot reach object 'obj'"):
         proposal_at_start(closed, Settings(), "obj", 0)
+
+
+def test_vectors_and_other_colours(room_file: str, tmp_path: Path):
+    """SVG in the theme that was asked for; formats of animations are refused."""
+    options = ["--format", "svg", "--theme", "colorblind", "--out", str(tmp_path)]
+    assert run(room_file, *options)[0] == 0
+    assert (tmp_path / "room-Rnd+FPR-obj-0.svg").read_text().startswith("<svg ")
+    assert "--format: found 'gif', allowed are png, svg" in run(room_file, "--format", "gif", "--out", "o")[2]

@@ -79,3 +79,10 @@ def test_every_generator_draws_a_tree(tmp_path: Path, method: str):
     result = CliRunner().invoke(app, ["tree", str(PUZZLES / "corner.yaml"), "--method", method, "--out", str(tmp_path)])
     assert result.exit_code == 0
     assert (tmp_path / f"corner-{method}-0-tree.png").is_file()
+
+
+def test_trees_as_vectors(tmp_path: Path):
+    """SVG with the caption as text."""
+    arguments = ["tree", str(PUZZLES / "cube-free.yaml"), "--format", "svg", "--out", str(tmp_path)]
+    assert CliRunner().invoke(app, arguments).exit_code == 0
+    assert "configurations, " in (tmp_path / "cube-free-Rnd+FPR-0-tree.svg").read_text()
