@@ -8,7 +8,7 @@ from converter.plan import Plan
 from converter.polyline import path_length
 from converter.preview.checks import Problem as Fault
 from converter.preview.checks import ProblemKind, check_scene
-from converter.preview.drive import drive
+from converter.preview.driving import drive
 from converter.preview.playback import play_back
 from converter.preview.report import Approach, Push, SceneReport
 from converter.scene import Body, Scene

@@ -62,7 +62,7 @@ HOMES = {
     },
     "pymunk": {
         "converter/preview/checks.py",
-        "converter/preview/drive.py",
+        "converter/preview/driving.py",
         "converter/preview/playback.py",
         "converter/preview/simulation.py",
         "converter/preview/world.py",

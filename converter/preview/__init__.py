@@ -6,6 +6,24 @@ Where to drive is for the caller to say.
 """
 
 from converter.preview.checks import Problem, ProblemKind, SceneCheck, check_scene
+from converter.preview.driving import Drive, drive
+from converter.preview.playback import Playback, PlaybackProblem, PlaybackProblemKind, play_back
+from converter.preview.simulation import Moved, Touch
 from converter.preview.world import AGENT, ENGINE_SLACK
 
-__all__ = ["AGENT", "ENGINE_SLACK", "Problem", "ProblemKind", "SceneCheck", "check_scene"]
+__all__ = [
+    "AGENT",
+    "ENGINE_SLACK",
+    "Drive",
+    "Moved",
+    "Playback",
+    "PlaybackProblem",
+    "PlaybackProblemKind",
+    "Problem",
+    "ProblemKind",
+    "SceneCheck",
+    "Touch",
+    "check_scene",
+    "drive",
+    "play_back",
+]

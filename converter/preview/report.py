@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from converter.preview.checks import Problem
-from converter.preview.drive import Drive
+from converter.preview.driving import Drive
 from converter.preview.playback import Playback
 from converter.shape import FloatArray
 

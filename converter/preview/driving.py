@@ -53,7 +53,7 @@ class Drive:
 
 
 def drive(scene: Scene, path: FloatArray) -> Drive:
-    """Drives from the start of `scene`, which is put to the beginning of `path` (n, 2) [m], to the end of `path`."""
+    """Drives along `path` (n, 2) [m], world, with the objects of `scene` where they are at its start."""
     path = frozen_array(path, (None, 2))
     simulation = Simulation(scene, TIME_STEP)
     agent = simulation.world.agent.body
@@ -80,18 +80,16 @@ def drive(scene: Scene, path: FloatArray) -> Drive:
             waited += 1
         simulation.step()
     short_by = math.dist(agent.position, points[-1])
+    moved = simulation.moved()
+    movers = {AGENT, *(each.object for each in moved)}
     return Drive(
         reached=short_by <= ARRIVED + simulation.world.allowed,
         end=simulation.world.agent.place,
         short_by=short_by,
         time_s=simulation.time_s,
-        touches=tuple(touch for touch in simulation.touches if AGENT in touch.bodies or _was_pushed(touch, simulation)),
-        moved=simulation.moved(),
+        touches=tuple(touch for touch in simulation.touches if movers.intersection(touch.bodies)),
+        moved=moved,
     )
-
-
-def _was_pushed(touch: Touch, simulation: Simulation) -> bool:
-    return any(moved.object in touch.bodies for moved in simulation.moved())
 
 
 def _points(path: FloatArray) -> list[Place]:

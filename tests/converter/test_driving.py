@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from converter.preview.drive import Drive, drive
+from converter.preview.driving import Drive, drive
 from converter.preview.simulation import MOVED
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import Part
