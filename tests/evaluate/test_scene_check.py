@@ -32,7 +32,7 @@ LEVEL = """
 """
 
 
-def planned(scene: Scene, seed: int = 0, time_limit: float = 120.0) -> Plan:
+def planned(scene: Scene, seed: int = 0, time_limit: float = 900.0) -> Plan:
     """A plan by Rnd+FPR."""
     settings = settings_for("fast", method="Rnd+FPR", time_limit=time_limit)
     return solve(scene, settings, np.random.default_rng(seed)).to_plan(scene, settings, seed=seed)
