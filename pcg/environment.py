@@ -30,10 +30,11 @@ from gymnasium import spaces
 
 from pcg.episodes import Beginning, Episodes, EpisodeSettings
 from pcg.level import Level, TileArray
-from pcg.observation import SCALAR_LIMIT, SCALARS, observation_parts
+from pcg.observation import observation_parts
 from pcg.representation import N_TILES, REPRESENTATIONS
 from pcg.request import Request
 from pcg.reward import RewardSettings
+from pcg.scalar_kernel import SCALAR_LIMIT, SCALARS
 from pcg.statistics_kernel import Column
 from pcg.task import request_beginning, require_fitting
 from pcg.task_distribution import TaskDistribution

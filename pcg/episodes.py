@@ -13,7 +13,7 @@ import numpy as np
 from pcg.grid import BoolArray
 from pcg.level import TileArray
 from pcg.representation import KEEP, REPRESENTATIONS, IntArray, Representation
-from pcg.reward import Control, FloatArray, RewardSettings, distance, reward
+from pcg.reward import Control, FloatArray, RewardSettings, distances, reward
 from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, edit, make_judge, measure
 
 
@@ -144,6 +144,7 @@ class Episodes:
         self.changes = np.zeros(n, dtype=np.int64)
         archive = np.zeros((0, *shape), dtype=np.uint8) if archive is None else archive
         max_crates = settings.reward.crates + settings.spare_crates
+        self._wanted = settings.reward.wanted()
         self.judge = make_judge(archive, max_crates, settings.max_states)
         self._representation: Representation = REPRESENTATIONS[settings.representation](shape, n)
         self._numbers = np.arange(n)
@@ -167,7 +168,7 @@ class Episodes:
         self.changes[episodes] = 0
         self._representation.begin(rng, episodes)
         measure(self.maps, episodes, self.statistics, self.judge)
-        self.distance[episodes] = distance(self.statistics[episodes], self.controls[episodes], self.settings.reward)
+        distances(self.statistics, self.controls, episodes, self._wanted, self.distance)
 
     def is_valid(self) -> BoolArray:
         """(n,) whether each map is a solvable level with the wanted numbers of crates and targets."""
@@ -182,12 +183,11 @@ class Episodes:
         changed = (tiles != KEEP) & (tiles != maps[self._numbers, cells]) & (frozen[self._numbers, cells] == 0)
         episodes = np.flatnonzero(changed)
         edit(self.maps, episodes, cells[episodes], tiles[episodes], self.statistics, self.judge)
-        after = self.distance.copy()
-        after[episodes] = distance(self.statistics[episodes], self.controls[episodes], self.settings.reward)
-        gained = reward(self.distance, after, self.settings.reward)
-        self.distance = after
+        before = self.distance.copy()
+        distances(self.statistics, self.controls, episodes, self._wanted, self.distance)
         self.steps += 1
         self.changes += changed
-        terminated = after == 0
+        terminated = self.distance == 0
         spent = (self.steps >= self.settings.max_steps) | (self.changes >= self.settings.max_changes)
+        gained = reward(before, self.distance, self.settings.reward)
         return Transition(gained, changed, terminated, spent & ~terminated)

@@ -15,18 +15,13 @@ from pcg.episodes import Episodes, EpisodeSettings
 from pcg.grid import BoolArray
 from pcg.level import TileArray
 from pcg.representation import N_TILES, IntArray
-from pcg.reward import Control
+from pcg.scalar_kernel import SCALARS, write_scalars
 from pcg.statistics_kernel import Column
 
 Float32Array = npt.NDArray[np.float32]
 
 WINDOW = 5
 """Side of the window around the position."""
-
-SCALARS = 24
-
-SCALAR_LIMIT = 10.0
-"""Scalars are clipped to plus and minus this."""
 
 
 def observation_size(settings: EpisodeSettings) -> int:
@@ -42,42 +37,21 @@ EVERY: Final = slice(None)
 
 
 def scalars(episodes: Episodes, chosen: IntArray | slice = EVERY) -> Float32Array:
-    """(n, SCALARS) of the chosen episodes: counts, distances, flags, controls and what is left of the budgets, most of them within -2 to 2."""
+    """(n, SCALARS) counts, distances, flags, controls and what is left of the budgets of the chosen episodes."""
     settings = episodes.settings
-    wanted, tenth = settings.reward, settings.cells / 10
-    s, c = episodes.statistics[chosen].T, episodes.controls[chosen].T
-    walls, pushes, solved = s[Column.WALLS], s[Column.PUSHES], s[Column.SOLVABLE]
-    parts = (
-        np.clip(s[Column.PLAYERS] - 1, -1, 4) / 2,
-        np.clip(s[Column.CRATES] - wanted.crates, -4, 4) / 2,
-        np.clip(s[Column.TARGETS] - wanted.targets, -4, 4) / 2,
-        np.clip(s[Column.REGIONS] - 1, -1, 4) / 2,
-        walls / tenth / 2,
-        np.clip(c[Control.WALLS_LOW] - walls, 0, 2 * tenth) / tenth,
-        np.clip(walls - c[Control.WALLS_HIGH], 0, 2 * tenth) / tenth,
-        solved,
-        pushes / 10,
-        np.clip(c[Control.PUSHES_LOW] - pushes, 0, 40) / 10,
-        np.clip(pushes - c[Control.PUSHES_HIGH], 0, 40) / 10,
-        s[Column.OCCLUDED],
-        s[Column.DEPENDENCY],
-        c[Control.WALLS_LOW] / tenth / 2,
-        c[Control.WALLS_HIGH] / tenth / 2,
-        c[Control.PUSHES_LOW] / 10,
-        # An open band would be far outside of the range that a network knows.
-        np.minimum(c[Control.PUSHES_HIGH], 40) / 10,
-        c[Control.OCCLUDED],
-        c[Control.DEPENDENCY],
-        c[Control.OCCLUDED] * (2 * s[Column.OCCLUDED] - 1) * solved,
-        c[Control.DEPENDENCY] * (2 * s[Column.DEPENDENCY] - 1) * solved,
-        np.clip(episodes.distance[chosen] / 10, 0, 2),
-        1 - episodes.changes[chosen] / settings.max_changes,
-        1 - episodes.steps[chosen] / settings.max_steps,
+    numbers = np.empty((len(episodes.distance[chosen]), SCALARS), dtype=np.float32)
+    write_scalars(
+        episodes.statistics[chosen],
+        episodes.controls[chosen],
+        settings.reward.crates,
+        settings.reward.targets,
+        settings.cells,
+        numbers,
     )
-    numbers = np.empty((len(walls), SCALARS), dtype=np.float32)
-    for column, part in enumerate(parts):
-        numbers[:, column] = part
-    return np.clip(numbers, -SCALAR_LIMIT, SCALAR_LIMIT, out=numbers)
+    numbers[:, -3] = np.minimum(episodes.distance[chosen] / 10, 2)
+    numbers[:, -2] = 1 - episodes.changes[chosen] / settings.max_changes
+    numbers[:, -1] = 1 - episodes.steps[chosen] / settings.max_steps
+    return numbers
 
 
 def observation_parts(episodes: Episodes, chosen: IntArray | slice = EVERY) -> dict[str, npt.NDArray[Any]]:

@@ -7,17 +7,19 @@ occlusion and dependency may differ from episode to episode: these *controls* ar
 al., Learning Controllable Content Generators, CoG 2021).
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import astuple, dataclass, field
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from pcg.solver_kernel import Int32Array
 from pcg.statistics_kernel import Column
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
 class Control(IntEnum):
@@ -36,7 +38,7 @@ class Control(IntEnum):
 
 @dataclass(frozen=True)
 class Weights:
-    """The weight of each term; 0 leaves it out, also of success."""
+    """The weight of each term, in the order of `distances`; 0 leaves it out, also of success."""
 
     player: float = 3.0
     crates: float = 2.0
@@ -77,120 +79,130 @@ class RewardSettings:
         if not 1 <= self.targets <= self.crates:
             raise ValueError(f"{self.targets} targets need as many crates, and at least one; there are {self.crates}")
 
-
-def below_and_above(values: npt.ArrayLike, low: npt.ArrayLike, high: npt.ArrayLike) -> FloatArray:
-    """(n,) distance of each value to its range, 0 inside."""
-    values = np.asarray(values, dtype=np.float64)
-    outside: FloatArray = np.maximum(np.maximum(np.subtract(low, values), np.subtract(values, high)), 0.0)
-    return outside
+    def wanted(self) -> "Wanted":
+        """The settings as the compiled functions take them."""
+        return Wanted(self.crates, self.targets, self.clearance, self.novelty, np.array(astuple(self.weights)))
 
 
-def player(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+class Wanted(NamedTuple):
+    """`RewardSettings` for compiled functions; `weights` in the order of `Weights`."""
+
+    crates: int
+    targets: int
+    clearance: int
+    novelty: int
+    weights: FloatArray
+
+
+_PLAYERS, _CRATES, _TARGETS, _WALLS, _REGIONS, _SOLVABLE, _PUSHES = (int(column) for column in list(Column)[:7])
+_OCCLUDED, _DEPENDENCY, _CLEARANCE, _NOVELTY = (int(column) for column in list(Column)[8:])
+_WALLS_LOW, _WALLS_HIGH, _PUSHES_LOW, _PUSHES_HIGH, _WANT_OCCLUDED, _WANT_DEPENDENCY = (int(c) for c in Control)
+
+
+@njit(cache=True)
+def outside(value: float, low: float, high: float) -> float:
+    """The distance of a value to its range, 0 inside."""
+    return max(low - value, value - high, 0.0)
+
+
+@njit(cache=True)
+def player(row: Int32Array) -> float:
     """Players too many or missing; one is wanted."""
-    del controls, settings
-    return below_and_above(statistics[:, Column.PLAYERS], 1, 1)
+    return outside(row[_PLAYERS], 1, 1)
 
 
-def crates(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def crates(row: Int32Array, wanted: Wanted) -> float:
     """Crates too many or missing."""
-    del controls
-    return below_and_above(statistics[:, Column.CRATES], settings.crates, settings.crates)
+    return outside(row[_CRATES], wanted.crates, wanted.crates)
 
 
-def targets(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def targets(row: Int32Array, wanted: Wanted) -> float:
     """Targets too many or missing."""
-    del controls
-    return below_and_above(statistics[:, Column.TARGETS], settings.targets, settings.targets)
+    return outside(row[_TARGETS], wanted.targets, wanted.targets)
 
 
-def regions(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def regions(row: Int32Array) -> float:
     """Regions of free cells beyond the first."""
-    del controls, settings
-    return below_and_above(statistics[:, Column.REGIONS], 1, 1)
+    return outside(row[_REGIONS], 1, 1)
 
 
-def walls(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def walls(row: Int32Array, control: FloatArray) -> float:
     """Walls outside of the band."""
-    del settings
-    return below_and_above(statistics[:, Column.WALLS], controls[:, Control.WALLS_LOW], controls[:, Control.WALLS_HIGH])
+    return outside(row[_WALLS], control[_WALLS_LOW], control[_WALLS_HIGH])
 
 
-def solvable(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def solvable(row: Int32Array) -> float:
     """1 unless the goal crate can be pushed to the first target and the other targets can be covered."""
-    del controls, settings
-    return 1.0 - statistics[:, Column.SOLVABLE].astype(np.float64)
+    return 1.0 - row[_SOLVABLE]
 
 
-def pushes(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def pushes(row: Int32Array, control: FloatArray) -> float:
     """Optimal pushes outside of the band; an unsolvable map has none."""
-    del settings
-    return below_and_above(
-        statistics[:, Column.PUSHES], controls[:, Control.PUSHES_LOW], controls[:, Control.PUSHES_HIGH]
-    )
+    return outside(row[_PUSHES], control[_PUSHES_LOW], control[_PUSHES_HIGH])
 
 
-def _unlike(wanted: FloatArray, found: npt.NDArray[np.int32], known: npt.NDArray[np.int32]) -> FloatArray:
-    """1 where a sign is wanted and the known flag has the other one, or where it is not known."""
-    fits = (known == 1) & ((wanted > 0) == (found == 1))
-    return np.where((wanted == 0) | fits, 0.0, 1.0)
+@njit(cache=True)
+def _unlike(wanted: float, found: int, known: int) -> float:
+    """0 if nothing is wanted, or the flag is known and has the wanted sign; else 1."""
+    return 0.0 if wanted == 0 or (known and (wanted > 0) == (found == 1)) else 1.0
 
 
-def occlusion(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def occlusion(row: Int32Array, control: FloatArray) -> float:
     """1 if the player sees the goal crate and must not, or the other way round."""
-    del settings
-    return _unlike(controls[:, Control.OCCLUDED], statistics[:, Column.OCCLUDED], statistics[:, Column.SOLVABLE])
+    return _unlike(control[_WANT_OCCLUDED], row[_OCCLUDED], row[_SOLVABLE])
 
 
-def dependency(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def dependency(row: Int32Array, control: FloatArray) -> float:
     """1 if no other crate has to move first but one should, or the other way round."""
-    del settings
-    return _unlike(controls[:, Control.DEPENDENCY], statistics[:, Column.DEPENDENCY], statistics[:, Column.SOLVABLE])
+    return _unlike(control[_WANT_DEPENDENCY], row[_DEPENDENCY], row[_SOLVABLE])
 
 
-def clearance(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def clearance(row: Int32Array, wanted: Wanted) -> float:
     """Free cells missing around the most enclosed crate."""
-    del controls
-    return below_and_above(statistics[:, Column.CLEARANCE], settings.clearance, np.inf)
+    return outside(row[_CLEARANCE], wanted.clearance, np.inf)
 
 
-def novelty(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
+@njit(cache=True)
+def novelty(row: Int32Array, wanted: Wanted) -> float:
     """Cells that have still to differ from the most similar map of the archive."""
-    del controls
-    return below_and_above(statistics[:, Column.NOVELTY], settings.novelty, np.inf)
+    return outside(row[_NOVELTY], wanted.novelty, np.inf)
 
 
-Term = Callable[[Int32Array, FloatArray, RewardSettings], FloatArray]
-
-TERMS: dict[str, Term] = {
-    "player": player,
-    "crates": crates,
-    "targets": targets,
-    "regions": regions,
-    "walls": walls,
-    "solvable": solvable,
-    "pushes": pushes,
-    "occlusion": occlusion,
-    "dependency": dependency,
-    "clearance": clearance,
-    "novelty": novelty,
-}
-"""By the name of its weight."""
-
-
-def distance(statistics: Int32Array, controls: FloatArray, settings: RewardSettings) -> FloatArray:
-    """(n,) weighted sum of all terms; 0 means that everything is met.
+@njit(cache=True)
+def distances(statistics: Int32Array, controls: FloatArray, chosen: IntArray, wanted: Wanted, out: FloatArray) -> None:
+    """Writes the weighted sum of all terms; 0 means that everything is met.
 
     Args:
         statistics: (n, len(Column)).
         controls: (n, len(Control)).
-        settings: Targets and weights.
+        chosen: Numbers of the maps.
+        wanted: Targets and weights.
+        out: (n,), written to.
     """
-    total = np.zeros(len(statistics))
-    for term in fields(Weights):
-        weight = getattr(settings.weights, term.name)
-        if weight:
-            total += weight * TERMS[term.name](statistics, controls, settings)
-    return total
+    for index in chosen:
+        row, control, weights = statistics[index], controls[index], wanted.weights
+        out[index] = (
+            weights[0] * player(row)
+            + weights[1] * crates(row, wanted)
+            + weights[2] * targets(row, wanted)
+            + weights[3] * regions(row)
+            + weights[4] * walls(row, control)
+            + weights[5] * solvable(row)
+            + weights[6] * pushes(row, control)
+            + weights[7] * occlusion(row, control)
+            + weights[8] * dependency(row, control)
+            + weights[9] * clearance(row, wanted)
+            + weights[10] * novelty(row, wanted)
+        )
 
 
 def reward(before: FloatArray, after: FloatArray, settings: RewardSettings) -> FloatArray:

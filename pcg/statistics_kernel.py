@@ -20,6 +20,7 @@ from pcg.level import Tile, TileArray
 from pcg.solver_kernel import SOLVED, ByteArray, Int32Array, WordArray, fewest_pushes, make_board
 
 IntArray = npt.NDArray[np.int64]
+Float32Array = npt.NDArray[np.float32]
 
 FLOOR, WALL, PLAYER, CRATE, TARGET = (int(tile) for tile in list(Tile)[:5])
 

@@ -11,8 +11,9 @@ from gymnasium import spaces
 
 from pcg.environment import Observation, SokobanEnvironment
 from pcg.episodes import EpisodeSettings
-from pcg.observation import SCALAR_LIMIT, Float32Array, flat_observations, observation_size
+from pcg.observation import Float32Array, flat_observations, observation_size
 from pcg.representation import N_TILES
+from pcg.scalar_kernel import SCALAR_LIMIT
 
 OUTSIDE = N_TILES
 """Tile of a cropped map where there is no cell."""

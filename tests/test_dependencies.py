@@ -39,6 +39,8 @@ HOMES = {
     },
     "numba": {
         "pcg/random_kernel.py",
+        "pcg/reward.py",
+        "pcg/scalar_kernel.py",
         "pcg/solver_kernel.py",
         "pcg/statistics_kernel.py",
         "planner/contact_kernel.py",
