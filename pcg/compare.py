@@ -155,8 +155,11 @@ def standard_tasks() -> list[Task]:
         task("at least 16 pushes", pushes=(16, MAX_PUSHES)),
         task("at least 16 pushes, 7-10 walls", pushes=(16, MAX_PUSHES), wall_density=(0.07, 0.10)),
         task("at least 20 pushes", pushes=(20, MAX_PUSHES)),
+        task("at least 20 pushes, 7-10 walls", pushes=(20, MAX_PUSHES), wall_density=(0.07, 0.10)),
+        task("at least 24 pushes", pushes=(24, MAX_PUSHES)),
         task("dependency", dependency=True),
         task("dependency, at least 12 pushes", dependency=True, pushes=(12, MAX_PUSHES)),
+        task("dependency, 7-10 walls", dependency=True, wall_density=(0.07, 0.10)),
         task("occluded, 7-10 walls", occluded=True, wall_density=(0.07, 0.10)),
         task("two rooms given, at least 16 pushes", frozen=two_rooms(), pushes=(16, MAX_PUSHES)),
     ]

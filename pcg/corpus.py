@@ -19,7 +19,7 @@ from pcg.generate import generated_levels
 from pcg.level_set import LEVELS_FILE, MANIFEST_FILE, GeneratedLevel, manifest_entry, read_manifest, write_level_set
 from pcg.request import LevelSource
 from pcg.selection import selected
-from pcg.symmetry import content_hash
+from pcg.symmetry import content_hash, tiles_hash
 from pcg.xsb import read_levels
 
 CARD_FILE = "README.md"
@@ -97,7 +97,7 @@ def differences(folder: Path, levels: list[GeneratedLevel]) -> Iterator[str]:
     for generated in levels:
         level = generated.level
         found = there.pop(level.name, None)
-        if found is None or content_hash(found) != content_hash(level):
+        if found is None or tiles_hash(found) != tiles_hash(level):
             yield f"{level.name}: {'not there' if found is None else 'other tiles'}"
         elif recorded.get(level.name) != manifest_entry(generated):
             yield f"{level.name}: other record in {MANIFEST_FILE}"

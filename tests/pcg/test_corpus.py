@@ -15,7 +15,7 @@ from pcg.random_source import RandomSource
 from pcg.report import report_levels, summarise
 from pcg.request import Proposal, Request
 from pcg.sokoban import apply_moves, is_solved
-from pcg.symmetry import content_hash
+from pcg.symmetry import content_hash, symmetries
 
 SETTINGS = CorpusSettings(generated=12, kept=4, occluded=5, test=1, seed=3)
 AGENTS = {
@@ -85,11 +85,13 @@ def test_differences_are_named(corpus: Path):
         levels[1], level=replace(levels[2].level, name=levels[1].level.name), solution=levels[2].solution
     )
     other_record = replace(levels[3], seed=99)
-    found = list(differences(corpus, [renamed, other_tiles, levels[2], other_record, *levels[4:]]))
+    turned = replace(levels[4], level=symmetries(levels[4].level)[1])
+    found = list(differences(corpus, [renamed, other_tiles, levels[2], other_record, turned, *levels[5:]]))
     assert found == [
         "m9-0: not there",
         f"{levels[1].level.name}: other tiles",
         f"{levels[3].level.name}: other record in manifest.jsonl",
+        f"{levels[4].level.name}: other tiles",
         f"{levels[0].level.name}: not generated",
     ]
 
