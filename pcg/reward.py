@@ -138,7 +138,7 @@ def walls(row: Int32Array, control: FloatArray) -> float:
 @njit(cache=True)
 def solvable(row: Int32Array) -> float:
     """1 unless the goal crate can be pushed to the first target and the other targets can be covered."""
-    return 1.0 - row[_SOLVABLE]
+    return float(1 - row[_SOLVABLE])
 
 
 @njit(cache=True)

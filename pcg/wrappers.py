@@ -8,6 +8,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from gymnasium.utils import RecordConstructorArgs
 
 from pcg.environment import Observation, SokobanEnvironment
 from pcg.episodes import EpisodeSettings
@@ -27,7 +28,7 @@ def _settings_of(env: Wrapped) -> EpisodeSettings:
     return env.unwrapped.settings
 
 
-class CroppedObservation(gymnasium.ObservationWrapper[Any, np.int64, Any]):
+class CroppedObservation(gymnasium.ObservationWrapper[Any, np.int64, Any], RecordConstructorArgs):
     """Shows a square of the map around the position; what is outside of the map is `OUTSIDE`, and frozen.
 
     Args:
@@ -36,7 +37,8 @@ class CroppedObservation(gymnasium.ObservationWrapper[Any, np.int64, Any]):
     """
 
     def __init__(self, env: Wrapped, size: int) -> None:
-        super().__init__(env)
+        RecordConstructorArgs.__init__(self, size=size)
+        gymnasium.ObservationWrapper.__init__(self, env)
         parts = env.observation_space
         if not isinstance(parts, spaces.Dict) or "position" not in parts.spaces:
             raise ValueError("only observations with a position can be cropped; wide has none")
@@ -60,11 +62,12 @@ class CroppedObservation(gymnasium.ObservationWrapper[Any, np.int64, Any]):
         ]
 
 
-class OneHotObservation(gymnasium.ObservationWrapper[Any, np.int64, Any]):
+class OneHotObservation(gymnasium.ObservationWrapper[Any, np.int64, Any], RecordConstructorArgs):
     """Shows the map as flags: (rows, columns, tiles), the last tile of a cropped map being `OUTSIDE`."""
 
     def __init__(self, env: Wrapped) -> None:
-        super().__init__(env)
+        RecordConstructorArgs.__init__(self)
+        gymnasium.ObservationWrapper.__init__(self, env)
         parts = env.observation_space
         if not isinstance(parts, spaces.Dict) or not isinstance(parts["map"], spaces.Box):
             raise TypeError("observations need a map of tiles")
@@ -77,11 +80,12 @@ class OneHotObservation(gymnasium.ObservationWrapper[Any, np.int64, Any]):
         return {**observation, "map": (observation["map"][..., None] == self._tiles).astype(np.uint8)}
 
 
-class FlatObservation(gymnasium.ObservationWrapper[Any, np.int64, Any]):
+class FlatObservation(gymnasium.ObservationWrapper[Any, np.int64, Any], RecordConstructorArgs):
     """Shows the one vector that the policies in `data/policies` are trained on; see `pcg.observation`."""
 
     def __init__(self, env: Wrapped) -> None:
-        super().__init__(env)
+        RecordConstructorArgs.__init__(self)
+        gymnasium.ObservationWrapper.__init__(self, env)
         self._settings: EpisodeSettings = _settings_of(env)
         self.observation_space = spaces.Box(
             -SCALAR_LIMIT, SCALAR_LIMIT, (observation_size(self._settings),), np.float32

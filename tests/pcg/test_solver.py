@@ -1,5 +1,6 @@
 from collections import deque
 from dataclasses import replace
+from heapq import heappop, heappush
 
 import numpy as np
 import pytest
@@ -9,9 +10,10 @@ from hypothesis import strategies as st
 from pcg.grid import DIRECTIONS, Cell, cells_of, shortest_walk
 from pcg.level import Level
 from pcg.sokoban import apply_moves, is_solved
-from pcg.solver import MAX_CELLS, Solution, SolverStatus, goal_crate_of, solve
+from pcg.solver import MAX_CELLS, Objective, Solution, SolverStatus, goal_crate_of, solve
 from pcg.symmetry import symmetries
 from pcg.xsb import parse_levels
+from tests.pcg import plain_solver
 
 
 def fewest_pushes(level: Level) -> int | None:
@@ -113,6 +115,82 @@ def test_symmetric_levels_need_as_many_pushes(level: Level):
         level.is_wall, players=level.players, crates=level.crates, targets=level.targets[:1], goal_crate=goal
     )
     assert len({solve(image).pushes for image in symmetries(level)}) == 1
+
+
+def fewest_moves(level: Level) -> tuple[int, int] | None:
+    """The least number of moves and, with so many moves, of pushes, by Dijkstra's algorithm over single steps."""
+    floor, targets, first = set(cells_of(~level.is_wall)), set(level.targets), level.targets[0]
+    start = (level.player, level.goal_crate or (-1, -1), tuple(level.crates))
+    least = {start: (0, 0)}
+    heap = [((0, 0), start)]
+    while heap:
+        cost, position = heappop(heap)
+        player, goal, crates = position
+        if targets <= set(crates) and goal in {(-1, -1), first}:
+            return cost
+        for down, right in DIRECTIONS.values():
+            ahead, beyond = (player[0] + down, player[1] + right), (player[0] + 2 * down, player[1] + 2 * right)
+            push = ahead in crates
+            if ahead not in floor or (push and (beyond not in floor or beyond in crates)):
+                continue
+            moved = tuple(sorted({*crates} - {ahead} | {beyond})) if push else crates
+            after = (ahead, beyond if push and ahead == goal else goal, moved)
+            reached = cost[0] + 1, cost[1] + push
+            if reached < least.get(after, (1 << 60, 0)):
+                least[after] = reached
+                heappush(heap, (reached, after))
+    return None
+
+
+@settings(max_examples=200, deadline=None)
+@given(playable_levels())
+def test_fewest_moves_agree_with_a_search_over_raw_moves(level: Level):
+    """With moves as objective a solution has the fewest moves and, of such solutions, the fewest pushes."""
+    solution = solve(level, objective=Objective.MOVES)
+    expected = fewest_moves(level)
+    assert (None if solution.moves is None else (solution.moves, solution.pushes)) == expected
+    assert solution.status is (SolverStatus.UNSOLVABLE if expected is None else SolverStatus.SOLVED)
+    if solution.solved:
+        check(level, solution)
+
+
+@pytest.mark.parametrize("named", ["any crate", "first crate"])
+def test_no_level_is_missed(named: str):
+    """On 1,000 random 10 x 10 levels both objectives find a solution where the plain twin finds one, and no others."""
+    rng = np.random.default_rng(7)
+    solved = 0
+    for index in range(500):
+        is_wall = rng.random((10, 10)) < (0.1, 0.2, 0.3, 0.4)[index % 4]
+        player, first, second, target = map(tuple, rng.permutation(np.argwhere(~is_wall))[:4].tolist())
+        goal = first if named == "first crate" else None
+        level = Level.of(is_wall, players=[player], crates=[first, second], targets=[target], goal_crate=goal)
+        solution, by_moves = solve(level), solve(level, objective=Objective.MOVES)
+        assert solution.pushes == plain_solver.fewest_pushes(level)
+        assert by_moves.status == solution.status
+        if solution.solved:
+            solved += 1
+            check(level, solution)
+            check(level, by_moves)
+            assert by_moves.moves <= solution.moves
+            assert by_moves.pushes >= solution.pushes
+    assert solved > 100
+
+
+@pytest.mark.parametrize(("crates", "targets"), [(3, 3), (4, 2)])
+def test_more_crates_and_targets(crates: int, targets: int):
+    """Levels of other sizes with more crates and targets are those of the plain twin too."""
+    rng = np.random.default_rng(3)
+    solved = 0
+    for _ in range(60):
+        is_wall = rng.random((6, 7)) < 0.1
+        player, *free = map(tuple, rng.permutation(np.argwhere(~is_wall)).tolist())
+        level = Level.of(is_wall, players=[player], crates=free[:crates], targets=free[crates : crates + targets])
+        solution = solve(level)
+        assert solution.pushes == plain_solver.fewest_pushes(level)
+        if solution.solved:
+            solved += 1
+            check(level, solution)
+    assert solved >= 3
 
 
 def test_a_surplus_crate_may_stand_on_a_dead_cell():

@@ -1,0 +1,125 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pcg.episodes import Beginning, Episodes, EpisodeSettings, random_maps
+from pcg.level import Tile
+from pcg.representation import REPRESENTATIONS
+from pcg.request import Request
+from pcg.reward import Control
+from pcg.statistics_kernel import Column
+from pcg.task import request_controls
+from pcg.task_distribution import TaskDistribution
+from tests.pcg.maps import solvable
+
+
+def begun(settings: EpisodeSettings, n: int, seed: int = 0) -> tuple[Episodes, np.random.Generator]:
+    """Episodes with drawn tasks, and the generator that drew them."""
+    rng = np.random.default_rng(seed)
+    episodes = Episodes(settings, n)
+    episodes.begin(rng, np.arange(n), TaskDistribution().beginning(rng, n, settings))
+    return episodes, rng
+
+
+@given(st.integers(1, 40), st.integers(1, 40), st.floats(0.01, 2), st.floats(0.01, 5))
+def test_budgets_are_shares_of_the_size(rows: int, columns: int, change_share: float, step_share: float):
+    """Both budgets follow from the size at hand, and are never zero."""
+    settings = EpisodeSettings(rows=rows, columns=columns, change_share=change_share, step_share=step_share)
+    assert settings.max_changes == max(1, round(change_share * rows * columns))
+    assert settings.max_steps == max(1, round(step_share * rows * columns))
+
+
+@pytest.mark.parametrize("name", REPRESENTATIONS)
+def test_frozen_cells_keep_their_tiles(name: str):
+    """No action changes a frozen cell, and trying costs no change."""
+    settings = EpisodeSettings(name, step_share=100, change_share=100)
+    episodes, rng = begun(settings, 16)
+    frozen, before = episodes.frozen.astype(bool), episodes.maps.copy()
+    assert frozen.any()
+    for _ in range(200):
+        episodes.step(rng.integers(episodes.representation.n_actions, size=16))
+    assert (episodes.maps[frozen] == before[frozen]).all()
+    assert (episodes.maps[~frozen] != before[~frozen]).any()
+
+
+@pytest.mark.parametrize("name", REPRESENTATIONS)
+def test_changes_are_counted_where_a_tile_changed(name: str):
+    """A change is one differing tile; each step makes at most one."""
+    episodes, rng = begun(EpisodeSettings(name, step_share=10, change_share=10), 8)
+    for step in range(1, 60):
+        before, changes = episodes.maps.copy(), episodes.changes.copy()
+        done = episodes.step(rng.integers(episodes.representation.n_actions, size=8))
+        differing = (episodes.maps != before).sum(axis=(1, 2))
+        assert (differing == done.changed).all()
+        assert (episodes.changes - changes == differing).all()
+        assert (episodes.steps == step).all()
+
+
+def test_an_episode_ends_with_either_budget():
+    """It is truncated, not terminated, at the last step or the last change."""
+    few_steps, rng = begun(EpisodeSettings("narrow", step_share=0.05), 4)
+    ends = [few_steps.step(np.zeros(4, dtype=np.int64)).truncated.tolist() for _ in range(5)]
+    assert ends == [[False] * 4] * 4 + [[True] * 4]
+    few_changes, rng = begun(EpisodeSettings("wide", change_share=0.03), 4)
+    while not (done := few_changes.step(rng.integers(500, size=4))).truncated.any():
+        assert (few_changes.changes < 3).all()
+    assert (few_changes.changes[done.truncated] == 3).all()
+    assert not done.terminated[done.truncated].any()
+
+
+def test_success_terminates():
+    """Writing the one missing tile of a level that meets the request ends the episode with the bonus."""
+    request = Request(pushes=(5, 1000))
+    (level,) = solvable(1, request)
+    settings = EpisodeSettings("wide")
+    tiles = level.tiles.copy()
+    row, column = level.player
+    tiles[row, column] = Tile.FLOOR
+    episodes = Episodes(settings, 1)
+    nothing_frozen = np.zeros((1, 10, 10), dtype=np.uint8)
+    start = Beginning(tiles[None], nothing_frozen, request_controls(request)[None])
+    episodes.begin(np.random.default_rng(0), np.array([0]), start)
+    far = float(episodes.distance[0])
+    done = episodes.step(np.array([5 * (10 * row + column) + Tile.PLAYER]))
+    assert (bool(done.terminated[0]), bool(done.truncated[0])) == (True, False)
+    assert done.reward[0] == pytest.approx(0.2 * (far + 5.0))
+    assert episodes.is_valid()[0]
+
+
+@pytest.mark.parametrize("name", REPRESENTATIONS)
+def test_rewards_add_up_to_the_way_covered(name: str):
+    """Without success the rewards of an episode sum to the scaled decrease of the distance: nothing can be farmed."""
+    settings = EpisodeSettings(name, step_share=10, change_share=10)
+    episodes, rng = begun(settings, 16)
+    start, total, succeeded = episodes.distance.copy(), np.zeros(16), np.zeros(16, dtype=bool)
+    for _ in range(100):
+        done = episodes.step(rng.integers(episodes.representation.n_actions, size=16))
+        total += done.reward
+        succeeded |= done.terminated
+    gained = settings.reward.scale * (start - episodes.distance)
+    assert total[~succeeded] == pytest.approx(gained[~succeeded])
+
+
+def test_a_valid_map_has_the_wanted_numbers():
+    """A solvable map with one crate too few is no valid level."""
+    episodes, _ = begun(EpisodeSettings(), 2)
+    episodes.statistics[:] = 0
+    episodes.statistics[:, [Column.PLAYERS, Column.TARGETS, Column.SOLVABLE]] = 1
+    episodes.statistics[:, Column.CRATES] = [2, 1]
+    assert episodes.is_valid().tolist() == [True, False]
+
+
+def test_start_maps_have_about_the_wanted_walls():
+    """Walls are drawn around the middle of the band, other things are rare."""
+    controls = np.zeros((400, len(Control)))
+    controls[:, Control.WALLS_LOW], controls[:, Control.WALLS_HIGH] = 10, 20
+    maps = random_maps(np.random.default_rng(0), controls, EpisodeSettings())
+    assert (maps == Tile.WALL).mean() == pytest.approx(0.15, abs=0.01)
+    assert (maps == Tile.CRATE).mean() == pytest.approx(0.01, abs=0.003)
+
+
+def test_unknown_representations_are_refused():
+    """The message lists what there is."""
+    with pytest.raises(ValueError, match="narrow, turtle, wide"):
+        EpisodeSettings("broad")
