@@ -8,12 +8,13 @@ RL_INSTALLED := .venv-rl/.installed
 COMPILE := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-header --group dev
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-rl demo bench test test-rl lock
+.PHONY: help setup setup-rl demo bench corpus corpus-check test test-rl lock
 
 help:
 	@echo "make setup  install the locked dependencies and manipuzzle itself into .venv"
 	@echo "make demo   generate, convert, check, solve, verify and draw levels and puzzles into out/"
 	@echo "make bench  time the parts, with peers beside them"
+	@echo "make corpus  build data/corpus anew from the committed policies; corpus-check: build it elsewhere and compare"
 	@echo "make test   lint, types and tests: what CI runs"
 	@echo "make test-rl  the tests that need torch, in an environment of their own (.venv-rl)"
 	@echo "make lock   resolve the dependencies anew into the two lock files"
@@ -36,6 +37,12 @@ demo: setup
 
 bench: setup
 	$(BIN)/manipuzzle bench
+
+corpus: setup
+	$(BIN)/manipuzzle corpus build --out data/corpus
+
+corpus-check: setup
+	$(BIN)/manipuzzle corpus check data/corpus
 
 test: setup
 	$(BIN)/ruff check
