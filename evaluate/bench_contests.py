@@ -5,7 +5,8 @@
   is tried with each of some placements; the nonlinear program starts from as many such grasps, one placement with each;
 - *segment*: whether one straight motion is free;
 - *puzzle*: from scene to plan. It is cut short at a time limit, which then counts as its time;
-- *level*: the exact Sokoban solver on random levels, and solving the scenes that they are converted to.
+- *level*: the exact Sokoban solver on random levels, and solving the scenes that they are converted to;
+- *environment step*: one edit of a level, see `bench_generator`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -20,6 +21,7 @@ from converter.preset import CLEAR
 from converter.scene import Scene
 from converter.shape import FloatArray
 from evaluate.bench import Contest
+from evaluate.bench_generator import environment_contests
 from evaluate.bench_peers import ShapelyObstacles, ompl_with_sampled_checks
 from evaluate.inputs import read_scene_file
 from evaluate.trial import warm_up
@@ -56,6 +58,9 @@ STARTS = 12
 
 PLACEMENTS = 8
 """Placements tried with each grasp."""
+
+ENVIRONMENT_SEEDS = 10
+"""Seeds of the contests of environments, which take longer than the others."""
 
 ITERATIONS = 100_000
 """Iterations of a motion query, enough to find a path."""
@@ -113,6 +118,7 @@ def contests(effort: Effort) -> Iterator[Contest]:
     for name in effort.puzzles:
         yield puzzle_contest(read_puzzle(name), effort)
     yield from level_contests(effort)
+    yield from environment_contests(min(effort.queries, ENVIRONMENT_SEEDS))
 
 
 def read_puzzle(name: str) -> Scene:
