@@ -68,6 +68,10 @@ def figure_bytes(figure: Figure, format_: str) -> bytes:
     """A figure as a file of one of `FORMATS`."""
     buffer = io.BytesIO()
     with paper_style():
+        if figure.get_layout_engine() is not None:
+            # Each drawing moves the layout a little, so it is settled once for all formats.
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")
         figure.savefig(buffer, format=format_, metadata=_METADATA[format_])
     return buffer.getvalue()
 

