@@ -1,7 +1,7 @@
-"""The configurations that the search knows: which to expand next, and which to refuse ([L], section IV)."""
+"""The configurations that the search knows, and which of them to expand next ([L], section IV)."""
 
 import heapq
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import count
@@ -10,9 +10,8 @@ import numpy as np
 
 from converter.shape import FloatArray
 from planner.pick_place import PickPlace
-from planner.problem import Configuration, Problem
+from planner.problem import Configuration
 from planner.settings import Settings
-from planner.visibility import ShortestPathTree
 
 
 @dataclass(eq=False)
@@ -95,41 +94,9 @@ class Frontier:
 
     def _surroundings(self, node: Node) -> bytes:
         places = np.vstack([node.configuration.objects, node.configuration.agent])
-        return _cells(places, self._cell)
+        return cells_of(places, self._cell)
 
 
-class Rejection:
-    """`rej` of [L]: refuses a configuration if enough others are equal to it (R).
-
-    Equal are configurations whose discretised object positions agree. That loses the ones that differ in where the
-    agent is shut in, on which side of an object in a corridor, say. `rejection_by_access` tells these apart: equal
-    are then only configurations between which the agent can drive.
-    """
-
-    def __init__(self, problem: Problem, settings: Settings) -> None:
-        self._problem = problem
-        self._active = "R" in settings.letters
-        self._by_access = settings.rejection_by_access
-        self._cell = settings.rejection_cell
-        self._limit = settings.equal_configurations
-        self._accepted: defaultdict[bytes, list[FloatArray]] = defaultdict(list)
-
-    def accepts(self, configuration: Configuration) -> bool:
-        """Whether fewer than the allowed number of equal configurations have been accepted; counts this one."""
-        key = _cells(configuration.objects, self._cell)
-        agents = self._accepted[key]
-        if self._active and self._number_of_equals(configuration, agents) >= self._limit:
-            return False
-        agents.append(configuration.agent)
-        return True
-
-    def _number_of_equals(self, configuration: Configuration, agents: list[FloatArray]) -> int:
-        if not self._by_access or len(agents) < self._limit:
-            return len(agents)
-        tree = ShortestPathTree(self._problem.agent_space(configuration), configuration.agent)
-        return int(tree.reaches(np.array(agents)).sum())
-
-
-def _cells(places: FloatArray, edge: float) -> bytes:
+def cells_of(places: FloatArray, edge: float) -> bytes:
     """The square cells in which `places` (n, 2) [m] lie, as a key."""
     return np.floor(places / edge).astype(np.int64).tobytes()

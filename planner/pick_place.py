@@ -88,6 +88,9 @@ class PickPlaceSolver(Protocol):
     def placeable(self, index: int, subgoals: FloatArray) -> BoolArray:
         """For each of `subgoals` (n, 2) whether object `index` may be brought near it; necessary, not sufficient."""
 
+    def contacts(self, index: int) -> FloatArray:
+        """Positions (k, 2) [m] at which contact stops a carry of object `index`; none if the solver does not know."""
+
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
         """Brings object `index` into `region`; None if no way was found."""
 

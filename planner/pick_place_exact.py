@@ -50,6 +50,10 @@ class _Grasp:
         """
         return self._tree.nearest_points(positions + self.offset) - self.offset
 
+    def contacts(self) -> FloatArray:
+        """Positions (k, 2) [m] of the object at which contact stops a carry in this grasp."""
+        return self._tree.turns - self.offset
+
     def carry_to(self, position: FloatArray) -> FloatArray | None:
         """The shortest path (n, 2) of the agent that brings the object to `position` (2,)."""
         return self._tree.path_to(position + self.offset)
@@ -92,6 +96,10 @@ class ExactPickPlace:
             led[~led] = grasp.leads_to(missing[~led])
             found[~found] = led
         return found
+
+    def contacts(self, index: int) -> FloatArray:
+        """Positions (k, 2) [m] of object `index` at which contact stops a carry in one of the sampled grasps."""
+        return np.vstack([np.empty((0, 2)), *(grasp.contacts() for grasp in self._reachable_grasps(index))])
 
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
         """Tries the sampled grasps in turn; None if none of them leads into `region`."""

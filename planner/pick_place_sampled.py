@@ -54,6 +54,11 @@ class SampledPickPlace:
         del index
         return np.ones(len(subgoals), dtype=bool)
 
+    def contacts(self, index: int) -> FloatArray:
+        """None: carries are sampled."""
+        del index
+        return np.empty((0, 2))
+
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
         """Optimises switch configurations from several starts and seeks the motions between the first ones."""
         self._counters["subproblems_tried"] += 1

@@ -19,11 +19,13 @@ from converter.plan import Status
 from converter.scene import Scene
 from converter.shape import FloatArray
 from planner.assemble import segments_of, subgoals_of
-from planner.frontier import Frontier, Node, Rejection
+from planner.frontier import Frontier, Node
 from planner.heuristics import Heuristic, score, scores_by, scores_if
 from planner.original_problem import original_solver
 from planner.pick_place import PickPlace, PickPlaceSolver, Region
 from planner.problem import Configuration, Problem
+from planner.rejection import Rejection
+from planner.restarts import with_restarts
 from planner.result import PlanResult, Progress
 from planner.settings import Settings
 from planner.subgoals import GENERATORS, GeneratorFactory, propose_subgoals
@@ -55,7 +57,11 @@ def solve(
         InputError: bodies of the scene overlap at the start, or method Hum has no demonstration for the scene.
     """
     problem = Problem(scene)
-    return Search(problem, settings, rng, should_stop, on_progress, generator=generator, heuristic=heuristic).run()
+
+    def search(budgets: Settings) -> PlanResult:
+        return Search(problem, budgets, rng, should_stop, on_progress, generator=generator, heuristic=heuristic).run()
+
+    return with_restarts(search, settings)
 
 
 class Search:
@@ -99,6 +105,8 @@ class Search:
         self._frontier = Frontier(settings)
         self._rejection = Rejection(problem, settings)
         self._generator = (generator or GENERATORS[settings.generator])(problem, settings)
+        # Other generators say themselves where candidates come from.
+        self._in_contact = generator is None and settings.generator == "Rnd"
         self._score = heuristic or score
         self._scores_of = scores_if if heuristic is None else scores_by(heuristic)
         self._solver_for = subproblem_solvers(problem, settings, rng, self.counters, self._out_of_budget)
@@ -158,11 +166,12 @@ class Search:
             self.settings,
             self.rng,
             self._scores_of,
+            partial(subproblems.contacts, index) if self._in_contact else None,
         ).subgoals
 
     def _add(self, configuration: Configuration, parent: Node | None = None, step: PickPlace | None = None) -> None:
         """Enters a configuration into the tree unless `rej` refuses it."""
-        if not self._rejection.accepts(configuration):
+        if not self._rejection.accepts(configuration, step.index if step else self.problem.goal_index):
             self.counters["rejected"] += 1
             return
         node = Node(configuration, parent, step, self._score(self.problem, configuration))

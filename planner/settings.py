@@ -36,6 +36,7 @@ _COUNTS = (
     "motion_attempts",
     "equal_configurations",
     "expansions",
+    "restart_after",
     "max_expansions",
 )
 
@@ -53,6 +54,8 @@ class Settings(MbtsSettings):
         candidates: Free positions drawn for an object before the filter.
         near_share: Share of the proposals of Rnd that draw their candidates near the object instead of in the whole
             room. Maze needs them; elsewhere half of all costs nothing measurable but in four-blocks.
+        contact_share: Share of the proposals of Rnd that draw their candidates from the places where contact stops a carry:
+            a walk of many short carries, as in Maze, makes most way by these.
         keep_share: Share of the candidates that passes the filter.
         subgoals_per_object: Positions drawn from those that passed; the trivial subgoal comes on top.
         subgoal_size: Sides of the square around a subgoal in which the object may be placed [m]; the subgoals of the
@@ -67,13 +70,13 @@ class Settings(MbtsSettings):
         motion_iterations: Iterations of RRT-Connect for a motion between switch configurations.
         motion_attempts: Switch configurations of one subproblem for which motions are sought.
         shortcut_rounds: Random shortcuts tried on a path of RRT-Connect.
-        equal_configurations: Equal configurations that rejection lets pass. [L] allows two; Maze, whose pockets are
-            a few centimetres wide, is solved in none of 4 runs with two, in 3 of 5 with six, in 6 of 6 with ten.
+        equal_configurations: Equal configurations that rejection lets pass, two as in [L].
         rejection_by_access: Whether rejection counts only those configurations as equal between which the agent can
-            also drive.
+            drive, and lets more pass the fewer grasps it can drive to; see `planner.rejection`.
         rejection_cell: Edge of the cells in which rejection compares object positions [m].
         novelty_cell: Edge of the cells in which prioritised selection counts expansions to break ties [m].
         expansions: How often one configuration may be expanded.
+        restart_after: Expansions after which the search starts anew; see `planner.restarts`.
         max_expansions: Expansions in all after which the search gives up.
         improve: Wall time for improving a plan once it is found [s]; 0 keeps the first plan.
         improve_rounds: Rounds of local search and restarts after which improvement ends.
@@ -85,6 +88,7 @@ class Settings(MbtsSettings):
     time_limit: float = 60.0
     candidates: int = 100
     near_share: float = 0.5
+    contact_share: float = 0.5
     keep_share: float = 0.2
     subgoals_per_object: int = 5
     subgoal_size: float = 0.1
@@ -96,11 +100,12 @@ class Settings(MbtsSettings):
     motion_iterations: int = 20_000
     motion_attempts: int = 2
     shortcut_rounds: int = 30
-    equal_configurations: int = 10
+    equal_configurations: int = 2
     rejection_by_access: bool = True
     rejection_cell: float = 0.1
     novelty_cell: float = 0.2
     expansions: int = 2
+    restart_after: int = 1500
     max_expansions: int = 100_000
     improve: float = 0.0
     improve_rounds: int = 100_000
@@ -117,6 +122,9 @@ class Settings(MbtsSettings):
         for name in _COUNTS:
             if getattr(self, name) < 1:
                 raise InputError(name, f"found {getattr(self, name)}, must be at least 1")
+        for name in ("near_share", "contact_share"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise InputError(name, f"found {getattr(self, name)}, must be from 0 to 1")
         if not 0 < self.keep_share <= 1:
             raise InputError("keep_share", f"found {self.keep_share}, must be > 0 and at most 1")
         if not (self.subgoal_size >= 0 and self.rejection_cell > 0 and self.novelty_cell > 0):
@@ -155,8 +163,9 @@ PRESETS = {
         motion_iterations=3000,
         motion_attempts=1,
         near_share=0.0,
+        contact_share=0.0,
+        restart_after=100_000,
         rejection_by_access=False,
-        equal_configurations=2,
     ),
 }
 """Settings by the name of their preset."""

@@ -81,6 +81,7 @@ def propose_subgoals(
     settings: Settings,
     rng: np.random.Generator,
     scores_of: Callable[[Problem, Configuration, int, FloatArray], FloatArray] = scores_if,
+    contacts: Callable[[], FloatArray] | None = None,
 ) -> Proposal:
     """Positions to bring object `index` to.
 
@@ -93,9 +94,15 @@ def propose_subgoals(
         settings: Number of candidates, share that the filter keeps, number of subgoals.
         rng: Source of all randomness.
         scores_of: The score that a configuration would have with an object at each of some positions.
+        contacts: Where contact stops a carry, positions (k, 2) [m] from which `contact_share` of the proposals draw
+            their candidates instead.
     """
-    candidates = generator.candidates(configuration, index, settings.candidates, rng)
-    candidates = candidates[placeable(candidates)]
+    candidates = np.empty((0, 2))
+    if contacts is not None and rng.random() < settings.contact_share:
+        candidates = rng.permutation(contacts())[: settings.candidates]
+    if len(candidates) == 0:
+        candidates = generator.candidates(configuration, index, settings.candidates, rng)
+        candidates = candidates[placeable(candidates)]
     scores = scores_of(problem, configuration, index, candidates)
     passed = np.arange(len(candidates))
     if "F" in settings.letters and len(candidates):

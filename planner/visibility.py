@@ -186,6 +186,11 @@ class ShortestPathTree:
             start, obstacles.corners, obstacles.normals, space.bounds, *obstacles.arrays
         )
 
+    @property
+    def turns(self) -> FloatArray:
+        """The corners (k, 2) [m] that can be reached: where contact ends a straight motion, or shortest paths turn."""
+        return np.asarray(self._points[1:][np.isfinite(self._distance[1:])])
+
     def reaches(self, goals: FloatArray) -> BoolArray:
         """For each of `goals` (n, 2) whether a free path leads to it."""
         obstacles = self.space.obstacles.arrays

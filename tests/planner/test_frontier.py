@@ -1,17 +1,14 @@
-"""Order of expansion, budget of expansions, and rejection of equal configurations."""
-
-from typing import Any
+"""Order and budget of expansions."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planner.frontier import Frontier, Node, Rejection
+from planner.frontier import Frontier, Node
 from planner.pick_place import PickPlace
-from planner.problem import Configuration, Problem
+from planner.problem import Configuration
 from planner.settings import Settings
-from tests.planner.scenes import body, room, vectors, wall
+from tests.planner.scenes import vectors
 
 PRIORITISED, OLDEST_FIRST = Settings(method="Rnd+FP"), Settings(method="Rnd+R")
 scores = st.lists(st.sampled_from([0.0, 2.0, 5.0, 10.0, 15.0, 20.0]), min_size=1, max_size=12)
@@ -103,55 +100,3 @@ def test_steps_lead_from_the_start():
     grandchild = Node(configuration((0, 0)), child, second)
     assert start.steps() == []
     assert grandchild.steps() == [first, second]
-
-
-def rejection(**changes: Any) -> Rejection:
-    """Rejection in an empty room by object positions alone, unless changed."""
-    objects = body("obj", 1, 1), body("other", -1, -1)
-    settings = {"method": "Rnd+R", "rejection_by_access": False, "equal_configurations": 2, **changes}
-    return Rejection(Problem(room(objects=objects)), Settings(**settings))
-
-
-def test_two_equal_configurations_pass():
-    """The third configuration with equal object positions is refused, wherever the agent is; others pass."""
-    rej = rejection()
-    equal = [Configuration(np.array([x, 0.0]), vectors([0.51, 0.12], [1, 1])) for x in (0.0, 1.0, 2.0)]
-    assert [rej.accepts(one) for one in equal] == [True, True, False]
-    assert rej.accepts(configuration((0.51, 0.12), (1, 1.2)))
-
-
-@pytest.mark.parametrize(
-    ("other", "equal"),
-    [((0.59, 0.11), True), ((0.61, 0.11), False), ((0.51, 0.09), False), ((0.51, -0.11), False)],
-)
-def test_equal_means_in_the_same_cells(other: tuple[float, float], *, equal: bool):
-    """Positions are compared by cells of 0.1 m, on both sides of zero."""
-    rej = rejection(equal_configurations=1)
-    assert rej.accepts(configuration((0.51, 0.11), (1, 1)))
-    assert rej.accepts(configuration(other, (1, 1))) == (not equal)
-
-
-def test_swapped_objects_are_another_configuration():
-    """Which object stands where counts."""
-    rej = rejection(equal_configurations=1)
-    assert rej.accepts(configuration((0.5, 0), (1, 0)))
-    assert rej.accepts(configuration((1, 0), (0.5, 0)))
-
-
-def test_without_the_letter_nothing_is_refused():
-    """Rejection is off in methods without R."""
-    rej = rejection(method="Rnd+FP")
-    assert all(rej.accepts(configuration((0.5, 0.1), (1, 1))) for _ in range(5))
-
-
-def test_agents_on_either_side_of_an_object_are_told_apart():
-    """By access, configurations are equal only if the agent can drive from one to the other."""
-    corridor = [wall(x, sign * 1.2, 1, 2) for sign in (1, -1) for x in (-1.5, -0.5, 0.5, 1.5)]
-    problem = Problem(room(*corridor, objects=(body("obj", 0, 0),), agent=(-1.5, 0)))
-    rej = Rejection(problem, Settings(method="Rnd+R", equal_configurations=2))
-    left, right = (
-        [Configuration(np.array([x, 0.0]), vectors([0, 0])) for x in side] for side in ([-1, -1.5, -0.5], [1, 0.5, 1.5])
-    )
-    assert [rej.accepts(one) for one in left] == [True, True, False]
-    assert [rej.accepts(one) for one in right] == [True, True, False]
-    assert [rej.accepts(one) for one in (left[0], right[0])] == [False, False]

@@ -105,3 +105,15 @@ def test_what_one_query_computes_later_ones_reuse():
     assert first is not None
     assert again is not None
     np.testing.assert_array_equal(first.carry, again.carry)
+
+
+def test_contacts_are_where_carries_end():
+    """The places where contact stops a carry can be reached, and from each of them some way is barred."""
+    scene = room(wall(0, 1.5, 2, 1), objects=(body("obj", 0, 0),), agent=(-1, 0), goal=(1, 1))
+    solver = solver_at_start(scene)
+    contacts = solver.contacts(0)
+    assert len(contacts) > 0
+    for place in contacts[:10]:
+        step = solver.pick_place(0, Region.around(place, 0.0))
+        assert step is not None
+        assert violations(scene, step) <= {ViolationKind.GOAL_MISSED}

@@ -59,6 +59,11 @@ class Scripted:
         del index
         return np.ones(len(subgoals), dtype=bool)
 
+    def contacts(self, index: int) -> FloatArray:
+        """None are known."""
+        del index
+        return np.empty((0, 2))
+
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
         """The first call is about the goal, the later ones are about subgoals."""
         call = next(self._calls)

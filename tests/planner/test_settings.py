@@ -70,6 +70,8 @@ def test_the_faithful_preset_is_as_published():
     faithful = PRESETS["faithful"]
     assert (faithful.equal_configurations, faithful.expansions, faithful.near_share) == (2, 2, 0.0)
     assert not faithful.rejection_by_access
+    assert faithful.contact_share == 0.0
+    assert faithful.restart_after >= faithful.max_expansions
     assert PRESETS["fast"].expansions == 2
 
 
@@ -87,6 +89,7 @@ def test_the_document_holds_every_field():
         ({"time_limit": float("inf")}, "time limit: found inf, must be a finite number"),
         ({"candidates": 0}, "candidates: found 0, must be at least 1"),
         ({"keep_share": 1.5}, "keep_share: found 1.5, must be > 0 and at most 1"),
+        ({"contact_share": -0.1}, "contact_share: found -0.1, must be from 0 to 1"),
         ({"rejection_cell": 0.0}, "rejection_cell > 0"),
     ],
 )
