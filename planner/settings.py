@@ -119,6 +119,9 @@ class Settings(MbtsSettings):
             raise InputError("time limit", f"found {self.time_limit}, must be a finite number of seconds > 0")
         if not 0 <= self.improve < math.inf:
             raise InputError("improve", f"found {self.improve}, must be a finite number of seconds >= 0")
+        self._require_ranges()
+
+    def _require_ranges(self) -> None:
         for name in _COUNTS:
             if getattr(self, name) < 1:
                 raise InputError(name, f"found {getattr(self, name)}, must be at least 1")
