@@ -18,6 +18,9 @@ from planner.configuration_space import ObstacleSet
 from planner.contact_kernel import crossings
 from planner.kernel import points_free
 
+END_MARGIN = 1e-6
+"""Distance [m] of grasps from the ends of a free stretch: at the very end rounding decides who sees a collision."""
+
 
 class ContactCurve:
     """All positions, relative to `body`, at which a disc of `radius` [m] touches it."""
@@ -54,21 +57,22 @@ class ContactCurve:
         return np.column_stack([cuts[:-1][starts_free], cuts[1:][ends_free]])
 
     def sample_free(self, n: int, obstacles: ObstacleSet, rng: np.random.Generator) -> FloatArray:
-        """Up to about `n` grasps (k, 2) [m] clear of `obstacles`, in random order.
+        """About `n` grasps (k, 2) [m] clear of `obstacles`, in random order.
 
-        Every free stretch gets one, the others are spread over their whole length.
+        Both ends of every free stretch, where the agent touches something else as well, and others spread over the
+        whole length. From an end the agent has the longest way to go until it meets the other side.
         """
         stretches = self.free_stretches(obstacles)
         if len(stretches) == 0:
             return np.empty((0, 2))
         lengths = stretches[:, 1] - stretches[:, 0]
-        ends = np.cumsum(lengths)
-        spread = ends[-1] * (np.arange(n) + rng.random(n)) / n
-        owner = np.minimum(np.searchsorted(ends, spread), len(ends) - 1)
-        missing = np.setdiff1d(np.arange(len(ends)), owner)
-        extra = stretches[missing, 0] + rng.random(len(missing)) * lengths[missing]
-        arc_lengths = np.concatenate([stretches[owner, 1] - (ends[owner] - spread), extra])
-        return rng.permutation(self.at(arc_lengths))
+        margins = np.minimum(END_MARGIN, lengths / 2)
+        ends = np.concatenate([stretches[:, 0] + margins, stretches[:, 1] - margins])
+        n_spread = max(n - len(ends), n // 2)
+        behind = np.cumsum(lengths)
+        spread = behind[-1] * (np.arange(n_spread) + rng.random(n_spread)) / n_spread
+        owner = np.minimum(np.searchsorted(behind, spread), len(behind) - 1)
+        return rng.permutation(self.at(np.concatenate([ends, stretches[owner, 1] - (behind[owner] - spread)])))
 
     def _surroundings(self) -> FloatArray:
         nearest, reach = self._knots[:, 1:3], self._knots[:, 4].max()

@@ -10,7 +10,7 @@ import numpy as np
 
 from converter.shape import FloatArray
 from planner.carries import Carry
-from planner.contact_curve import ContactCurve
+from planner.contact_curve import END_MARGIN, ContactCurve
 from planner.pick_place import Region
 from planner.problem import Configuration, Problem
 
@@ -19,9 +19,6 @@ CURVE_SAMPLES = 256
 
 SMALLEST, LARGEST = 1e-3, 1.0
 """Typical distances of small and of large changes [m]; all scales in between are equally likely."""
-
-GRASP_MARGIN = 1e-6
-"""Distance [m] of grasps from the ends of a free stretch: at the very end rounding decides who sees a collision."""
 
 CONTACT_GAP = 4e-10
 """What a placement in contact leaves free at most [m], less than the numeric slack."""
@@ -83,7 +80,7 @@ class Draws:
             if len(self._stretches) >= KEPT_STRETCHES:
                 self._stretches.clear()
             stretches = self._curves[index].free_stretches(self._problem.grasp_obstacles(configuration, index))
-            margin = np.minimum(GRASP_MARGIN, (stretches[:, 1] - stretches[:, 0]) / 2)
+            margin = np.minimum(END_MARGIN, (stretches[:, 1] - stretches[:, 0]) / 2)
             self._stretches[key] = stretches + margin[:, None] * np.array([1.0, -1.0])
         return self._stretches[key]
 

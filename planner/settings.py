@@ -105,7 +105,7 @@ class Settings(MbtsSettings):
     rejection_cell: float = 0.1
     novelty_cell: float = 0.2
     expansions: int = 2
-    restart_after: int = 1500
+    restart_after: int = 1000
     max_expansions: int = 100_000
     improve: float = 0.0
     improve_rounds: int = 100_000

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from converter.scene import NUMERIC_SLACK, Agent, Body
 from converter.shape import FloatArray, Part, rotation
 from planner.configuration_space import ObstacleSet, agent_obstacles
-from planner.contact_curve import ContactCurve
+from planner.contact_curve import END_MARGIN, ContactCurve
 from planner.kernel import points_free
 from tests.planner.plain_geometry import hull, points, polygons
 from tests.planner.scenes import RADIUS, body, turned, vectors, wall
@@ -143,15 +143,16 @@ def test_a_single_grasp_in_a_passage_without_clearance_is_found(yaw: float, edge
 
 
 def test_samples_are_spread_over_the_free_stretches():
-    """In the open each of n equal stretches holds one grasp, in random order; with walls all are free."""
+    """In the open each of equal stretches holds one grasp, besides the two ends; with walls all grasps are free."""
     obj = body("obj", 0, 0)
     curve = ContactCurve(obj, RADIUS)
     n = 16
-    grasps = curve.sample_free(n, NOTHING, np.random.default_rng(0))
+    grasps = curve.sample_free(n + 2, NOTHING, np.random.default_rng(0))
     grid = np.linspace(0, curve.length, 20_001)
     nearest = [int(np.hypot(*(curve.at(grid) - grasp).T).argmin()) for grasp in grasps]
     stretches = np.floor(grid[nearest] / curve.length * n).astype(int)
-    assert sorted(stretches) == list(range(n))
+    assert set(range(n)) <= set(stretches)
+    assert len(grasps) == n + 2
     assert list(stretches) != sorted(stretches)
     obstacles = agent_obstacles_of([wall(0.4, 0, 0.2, 2), wall(0, -0.31, 0.2, 0.2)])
     free = curve.sample_free(n, obstacles, np.random.default_rng(0))
@@ -173,6 +174,17 @@ def test_no_stretch_is_left_out():
     places = [curve.at(np.linspace(*stretch, 50)) for stretch in stretches]
     assert len(stretches) >= 6
     assert all(min(np.hypot(*(grasp - place).T).min() for grasp in grasps) < 0.01 for place in places)
+
+
+def test_both_ends_of_a_stretch_are_among_the_samples():
+    """In a nook the agent grasps where it touches the one wall and where it touches the other."""
+    obstacles = agent_obstacles_of([wall(-0.6, 0, 0.2, 4), wall(0, 0.5, 4, 0.2)])
+    curve = ContactCurve(body("obj", -0.4, 0.3), RADIUS)
+    moved = obstacles.moved(np.array([0.4, -0.3]))
+    ends = curve.at(curve.free_stretches(moved).ravel())
+    grasps = curve.sample_free(6, moved, np.random.default_rng(0))
+    assert len(ends) == 2
+    assert all(np.hypot(*(grasps - end).T).min() < 2 * END_MARGIN for end in ends)
 
 
 def test_an_enclosed_object_has_no_grasp():

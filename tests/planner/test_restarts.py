@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from converter.plan import Status
-from planner.restarts import with_restarts
+from planner.restarts import luby, with_restarts
 from planner.result import PlanResult
 from planner.settings import Settings
 
@@ -21,13 +21,18 @@ def searches(*statuses: Status) -> tuple[Callable[[Settings], PlanResult], list[
     return search, allowed
 
 
-def test_each_search_may_expand_twice_as_many():
-    """What a search spent without a plan is doubled for the next; time and counters are those of all."""
-    search, allowed = searches(Status.TIMEOUT, Status.TIMEOUT, Status.SOLVED)
+def test_the_sequence_of_luby():
+    """Each power of two comes after two sequences of the smaller ones."""
+    assert [luby(i) for i in range(1, 16)] == [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]
+
+
+def test_budgets_follow_the_sequence():
+    """A search without a plan is started anew; time and counters are those of all."""
+    search, allowed = searches(*3 * [Status.TIMEOUT], Status.SOLVED)
     result = with_restarts(search, Settings(restart_after=10))
-    assert allowed == [10, 20, 40]
+    assert allowed == [10, 10, 20, 10]
     assert result.status is Status.SOLVED
-    assert result.counters == {"expansions": 70, "restarts": 2}
+    assert result.counters == {"expansions": 50, "restarts": 3}
 
 
 @pytest.mark.parametrize("status", [Status.SOLVED, Status.EXHAUSTED])
@@ -41,9 +46,9 @@ def test_what_has_not_given_up_is_not_repeated(status: Status):
 def test_expansions_are_limited_in_all():
     """The last search gets what is left."""
     search, allowed = searches(*3 * [Status.TIMEOUT])
-    result = with_restarts(search, Settings(restart_after=10, max_expansions=35))
-    assert allowed == [10, 20, 5]
-    assert (result.status, result.counters["expansions"]) == (Status.TIMEOUT, 35)
+    result = with_restarts(search, Settings(restart_after=10, max_expansions=25))
+    assert allowed == [10, 10, 5]
+    assert (result.status, result.counters["expansions"]) == (Status.TIMEOUT, 25)
 
 
 def test_a_search_that_was_stopped_is_not_repeated():
