@@ -263,6 +263,9 @@ def compare_generators(
     task: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="A task; repeat for several.", show_default="all")
     ] = None,
+    bands: Annotated[
+        bool, typer.Option("--bands", help="The tasks are the agents' bands of walls and pushes, instead.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Let random baseline, untrained and trained policies make levels; DIR/comparison.md compares yield and diversity.
@@ -271,7 +274,7 @@ def compare_generators(
     """
     from evaluate.commands.compare_generators import run
 
-    _exit(run(out, seeds, seconds, max_levels, task or [], as_json=json))
+    _exit(run(out, seeds, seconds, max_levels, task or [], bands=bands, as_json=json))
 
 
 @app.command(short_help="Train a policy that makes levels.")

@@ -37,16 +37,48 @@ def rows(measurements: Sequence[Measurement], task: str) -> Iterator[list[str]]:
             source,
             _spread([m.levels_per_cpu_s for m in runs]),
             three_digits(cpu / levels) if levels else "-",
-            f"{sum(m.met for m in runs) / max(1, sum(m.attempts for m in runs)):.2%}",
+            f"{_met_share(runs, source, task):.2%}",
             three_digits(1000 * levels / max(1, sum(m.steps for m in runs))),
             str(levels),
             *(_mean(runs, value) for value in _QUALITIES),
         ]
 
 
+SUMMARY_COLUMNS = ("source", "requests met by attempt, mean of the tasks", "tasks with levels", "fastest in tasks")
+
+
+def summary_rows(measurements: Sequence[Measurement]) -> Iterator[list[str]]:
+    """The cells of `SUMMARY_COLUMNS` for every source.
+
+    The share of requests met is the controllability of a generator: it does what it is asked for, at the first attempt.
+    """
+    tasks = list(dict.fromkeys(m.task for m in measurements))
+    speeds = {
+        source: [_speed(measurements, source, task) for task in tasks]
+        for source in dict.fromkeys(m.source for m in measurements)
+    }
+    best = [max(column) for column in zip(*speeds.values(), strict=True)]
+    for source, values in speeds.items():
+        shares = [_met_share(measurements, source, task) for task in tasks]
+        fastest = sum(0 < value == top for value, top in zip(values, best, strict=True))
+        some = sum(value > 0 for value in values)
+        yield [source, f"{mean(shares):.2%}", f"{some} of {len(tasks)}", f"{fastest} of {len(tasks)}"]
+
+
+def _speed(measurements: Sequence[Measurement], source: str, task: str) -> float:
+    runs = [m.levels_per_cpu_s for m in measurements if (m.source, m.task) == (source, task)]
+    return mean(runs) or 0.0
+
+
+def _met_share(measurements: Sequence[Measurement], source: str, task: str) -> float:
+    runs = [m for m in measurements if (m.source, m.task) == (source, task)]
+    return sum(m.met for m in runs) / max(1, sum(m.attempts for m in runs))
+
+
 def markdown(measurements: Sequence[Measurement]) -> str:
     """All tables as Markdown."""
-    parts = ["# Sources of levels compared", "", _NOTE]
+    overview = [list(SUMMARY_COLUMNS), ["---", "---:", "---:", "---:"], *summary_rows(measurements)]
+    parts = ["# Sources of levels compared", "", _NOTE, "", *(f"| {' | '.join(cells)} |" for cells in overview)]
     for task in dict.fromkeys(m.task for m in measurements):
         lines = [list(COLUMNS), ["---", *["---:"] * (len(COLUMNS) - 1)], *rows(measurements, task)]
         parts += ["", f"## {task}", "", *(f"| {' | '.join(cells)} |" for cells in lines)]

@@ -9,7 +9,7 @@ baseline a wall or a thing that it places.
 """
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -163,6 +163,16 @@ def standard_tasks() -> list[Task]:
         task("occluded, 7-10 walls", occluded=True, wall_density=(0.07, 0.10)),
         task("two rooms given, at least 16 pushes", frozen=two_rooms(), pushes=(16, MAX_PUSHES)),
     ]
+
+
+def band_tasks(requests: Iterable[Request]) -> list[Task]:
+    """A task for each request of agents, called after its bands; agents with the same request share one."""
+    return [Task(_bands(request), request) for request in dict.fromkeys(requests)]
+
+
+def _bands(request: Request) -> str:
+    fewest, most = (round(density * request.cells) for density in request.wall_density)
+    return f"{request.pushes[0]} to {request.pushes[1]} pushes, {fewest}-{most} walls"
 
 
 def two_rooms(side: int = 10) -> FrozenTiles:

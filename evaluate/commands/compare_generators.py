@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from evaluate.comparison_table import COLUMNS, TABLE_FILE, rows, write_comparison
+from evaluate.comparison_table import COLUMNS, SUMMARY_COLUMNS, TABLE_FILE, rows, summary_rows, write_comparison
 from evaluate.inputs import require_choice, require_writable
 from evaluate.output import print_json, print_line, print_table, progress
 from pcg.agents import read_agents
-from pcg.compare import Measurement, compare, standard_tasks
+from pcg.compare import Measurement, band_tasks, compare, standard_tasks
 from pcg.policy_source import PolicySource, UntrainedPolicy, policies_of
 from pcg.random_source import RandomSource
 from pcg.request import LevelSource
@@ -30,9 +30,12 @@ def sources() -> dict[str, LevelSource]:
     }
 
 
-def run(out: Path, seeds: int, seconds: float, max_levels: int, tasks: Sequence[str], *, as_json: bool) -> bool:
+def run(
+    out: Path, seeds: int, seconds: float, max_levels: int, tasks: Sequence[str], *, bands: bool, as_json: bool
+) -> bool:
     """Runs the command; see `evaluate.cli.compare_generators`."""
-    known = {task.name: task for task in standard_tasks()}
+    agents = read_agents().values()
+    known = {task.name: task for task in (band_tasks(a.request for a in agents) if bands else standard_tasks())}
     for name in tasks:
         require_choice("--task", name, list(known))
     chosen = [known[name] for name in tasks] or list(known.values())
@@ -49,5 +52,6 @@ def run(out: Path, seeds: int, seconds: float, max_levels: int, tasks: Sequence[
     else:
         for task in chosen:
             print_table(list(COLUMNS), rows(measurements, task.name), title=task.name)
+        print_table(list(SUMMARY_COLUMNS), summary_rows(measurements), title="all tasks")
         print_line(f"tables in {out / TABLE_FILE}")
     return True

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import pytest
 
-from evaluate.comparison_table import COLUMNS, markdown, rows
+from evaluate.comparison_table import COLUMNS, markdown, rows, summary_rows
 from pcg.compare import Measurement
 
 FIRST = Measurement(
@@ -40,6 +40,16 @@ def test_a_source_without_levels_has_a_row():
     """Zeros where there is something to count, dashes where there is nothing to average."""
     (row,) = rows([NOTHING], "t")
     assert row == ["b", "0 ± 0", "-", "0.00%", "0", "0", "-", "-", "-", "-"]
+
+
+def test_the_summary_counts_tasks():
+    """Shares are averaged over the tasks, a tie is won by both, a task without levels by nobody."""
+    runs = [FIRST, replace(FIRST, task="u", met=2), NOTHING, replace(FIRST, source="b", task="u")]
+    nobody = [replace(m, task="v", met=0, levels=0) for m in (FIRST, NOTHING)]
+    assert list(summary_rows([*runs, *nobody])) == [
+        ["a", "4.67%", "2 of 3", "2 of 3"],
+        ["b", "4.00%", "1 of 3", "1 of 3"],
+    ]
 
 
 @pytest.mark.parametrize("task", ["t", "u"])

@@ -145,7 +145,7 @@ def test_corpus_commands_refuse_bad_input(run: Run):
 
 
 def test_compare_writes_tables(run: Run, tmp_path: Path):
-    """A row for every source, in Markdown and as measurements; an unknown task is refused."""
+    """A row for every source in both tables, in Markdown and as measurements; an unknown task is refused."""
     task = standard_tasks()[0].name
     options = ["--seeds", "1", "--seconds", "0.05", "--max-levels", "3", "--task", task]
     found = document(run("compare-generators", "--out", "c", *options, "--json"))["measurements"]
@@ -155,7 +155,7 @@ def test_compare_writes_tables(run: Run, tmp_path: Path):
     assert len(found) == len(sources)
     assert len((tmp_path / "c" / "measurements.jsonl").read_text().splitlines()) == len(found)
     table = (tmp_path / "c" / "comparison.md").read_text()
-    assert all(table.count(f"| {source} |") == 1 for source in sources)
+    assert all(table.count(f"| {source} |") == 2 for source in sources)
     unknown = run("compare-generators", "--out", "c", "--task", "x")
     assert unknown.exit_code == 2
     assert "--task: found 'x', allowed are any level" in unknown.stderr

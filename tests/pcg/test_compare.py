@@ -4,7 +4,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from pcg.compare import Task, compare, measure, standard_tasks, two_rooms
+from pcg.agents import read_agents
+from pcg.compare import Task, band_tasks, compare, measure, standard_tasks, two_rooms
 from pcg.level import Level
 from pcg.random_source import RandomSource
 from pcg.request import Proposal, Request
@@ -79,3 +80,10 @@ def test_the_standard_tasks_make_sense():
     assert any(task.request.frozen == two_rooms() for task in tasks)
     (rooms,) = (task.request for task in tasks if task.request.frozen is not None)
     assert next(RandomSource().proposals(rooms, 0)).attempts > 0
+
+
+def test_agents_with_one_request_share_a_task():
+    """36 agents have twelve pairs of bands."""
+    tasks = band_tasks(agent.request for agent in read_agents().values())
+    assert len({task.name for task in tasks}) == len(tasks) == 12
+    assert tasks[0].name == "3 to 6 pushes, 7-10 walls"
