@@ -260,7 +260,7 @@ def test_a_goal_in_sight_takes_one_carry():
     """In an empty room the goal-object is carried to the goal in a straight line."""
     plan = verified(room(), Settings(), 0)
     assert (plan.pick_places, plan.counters["expansions"]) == (1, 1)
-        assert len(plan.segments[1].path) == 2
+    assert len(plan.segments[1].path) == 2
 
 
 def test_a_problem_that_is_solved_needs_no_motion():
