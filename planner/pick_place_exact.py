@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
@@ -49,6 +50,11 @@ class _Grasp:
         In a corridor as wide as the agent no random position is free; the tree's edges run along its middle.
         """
         return self._tree.nearest_points(positions + self.offset) - self.offset
+
+    def near_centre(self, region: Region) -> FloatArray:
+        """The position (1, 2) close to the centre of `region` that `nearby` finds, or (0, 2) if it lies outside."""
+        near = self.nearby(region.centre[None])
+        return near[region.contains(near)]
 
     def contacts(self) -> FloatArray:
         """Positions (k, 2) [m] of the object at which contact stops a carry in this grasp."""
@@ -102,12 +108,13 @@ class ExactPickPlace:
         return np.vstack([np.empty((0, 2)), *(grasp.contacts() for grasp in self._reachable_grasps(index))])
 
     def pick_place(self, index: int, region: Region) -> PickPlace | None:
-        """Tries the sampled grasps in turn; None if none of them leads into `region`."""
+        """Tries the sampled grasps in turn, for the centre of `region` first; None if none of them leads into it."""
         self._counters["subproblems_tried"] += 1
         samples = region.sample(self._settings.placement_samples, self._rng)
-        for grasp in self._reachable_grasps(index):
-            near = grasp.nearby(region.centre[None])
-            positions = np.vstack([samples, near[region.contains(near)]])
+        grasps = self._reachable_grasps(index)
+        to_centre = ((grasp, samples[:1]) for grasp in grasps)
+        elsewhere = ((grasp, np.vstack([samples[1:], grasp.near_centre(region)])) for grasp in grasps)
+        for grasp, positions in chain(to_centre, elsewhere):
             for position in positions[grasp.leads_to(positions)]:
                 approach, carry = self._from_agent.path_to(grasp.start), grasp.carry_to(position)
                 if approach is not None and carry is not None:
