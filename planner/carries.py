@@ -12,7 +12,6 @@ from functools import cached_property
 import numpy as np
 
 from converter.plan import Segment
-from converter.polyline import path_length
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace
 from planner.pick_place import PickPlace
@@ -58,7 +57,7 @@ class Route:
     @cached_property
     def length(self) -> float:
         """Distance that the agent drives [m]."""
-        return sum(path_length(step.approach) + path_length(step.carry) for step in self.steps)
+        return sum(step.length for step in self.steps)
 
     @property
     def cost(self) -> tuple[int, float]:
@@ -132,7 +131,7 @@ class MotionPlanner:
             step = self.step(configurations[-1], carry)
             if step is None:
                 return None
-            length += path_length(step.approach) + path_length(step.carry)
+            length += step.length
             steps.append(step)
             configurations.append(step.applied_to(configurations[-1]))
         is_plan = length < bound and self._problem.at_goal(configurations[-1])

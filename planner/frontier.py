@@ -4,6 +4,7 @@ import heapq
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import count
 
 import numpy as np
@@ -46,6 +47,11 @@ class Node:
         for step in steps:
             node = Node(step.applied_to(node.configuration), node, step)
         return node
+
+    @cached_property
+    def length(self) -> float:
+        """Distance that the agent drives on the way from the start [m]."""
+        return 0.0 if self.parent is None or self.step is None else self.parent.length + self.step.length
 
     @property
     def pick_places(self) -> int:

@@ -5,10 +5,12 @@ Two solvers share this interface: `pick_place_exact` (contact curve and visibili
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
+from converter.polyline import path_length
 from converter.scene import Goal
 from converter.shape import FloatArray
 from planner.kernel import BoolArray
@@ -67,6 +69,11 @@ class PickPlace:
     approach: FloatArray
     carry: FloatArray
     placement: FloatArray
+
+    @cached_property
+    def length(self) -> float:
+        """Distance that the agent drives [m]."""
+        return path_length(self.approach) + path_length(self.carry)
 
     @property
     def is_regrasp(self) -> bool:

@@ -87,6 +87,11 @@ class Problem:
         """Whether the goal-object's centre lies in the goal."""
         return self.scene.goal.contains(configuration.objects[self.goal_index])
 
+    def distance_to_goal(self, configuration: Configuration) -> float:
+        """How far the goal-object's centre is from the goal [m], as the crow flies."""
+        goal, centre = self.scene.goal, configuration.objects[self.goal_index]
+        return float(np.hypot(*np.maximum(np.abs(centre - goal.position) - goal.size / 2, 0.0)))
+
     def agent_space(self, configuration: Configuration, held: int | None = None) -> ConfigurationSpace:
         """Where the agent's centre may be; a `held` object is no obstacle."""
         return self._space(self.agent_walls, self.agent_objects, configuration, held)

@@ -74,6 +74,7 @@ class Search:
         should_stop: Asked between subproblems; True ends the search with status `timeout`.
         on_progress: Told after every expansion that did not end the search.
         max_pick_places: The most pick-places that a plan may have; None for no limit.
+        max_length: Configurations are left out from which a plan would be longer [m].
         generator: Makes the subgoal generator; None for that of the method.
         heuristic: Scores configurations for filter and selection; None for that of [L].
 
@@ -91,6 +92,7 @@ class Search:
         should_stop: Callable[[], bool] = lambda: False,
         on_progress: Callable[[Progress], object] = lambda _: None,
         max_pick_places: int | None = None,
+        max_length: float = np.inf,
         *,
         generator: GeneratorFactory | None = None,
         heuristic: Heuristic | None = None,
@@ -114,6 +116,7 @@ class Search:
         self._started = time.perf_counter()
         self._should_stop = should_stop
         self._on_progress = on_progress
+        self._max_length = max_length
         self._max_pick_places = np.inf if max_pick_places is None else max_pick_places
 
     def run(self) -> PlanResult:
@@ -171,10 +174,13 @@ class Search:
 
     def _add(self, configuration: Configuration, parent: Node | None = None, step: PickPlace | None = None) -> None:
         """Enters a configuration into the tree unless `rej` refuses it."""
+        node = Node(configuration, parent, step)
+        if node.length + self.problem.distance_to_goal(configuration) > self._max_length:
+            return
         if not self._rejection.accepts(configuration, step.index if step else self.problem.goal_index):
             self.counters["rejected"] += 1
             return
-        node = Node(configuration, parent, step, self._score(self.problem, configuration))
+        node.score = self._score(self.problem, configuration)
         self.nodes.append(node)
         self._best_score = max(self._best_score, node.score)
         self._frontier.add(node)

@@ -60,7 +60,8 @@ class Settings(MbtsSettings):
         subgoals_per_object: Positions drawn from those that passed; the trivial subgoal comes on top.
         subgoal_size: Sides of the square around a subgoal in which the object may be placed [m]; the subgoals of the
             published scene files are 0.1 m tables in the puzzles and 0.2 m tables in the generated scenes.
-        grasp_starts: Starts on the contact curve for one switch-configuration problem.
+        grasp_starts: Starts on the contact curve for one switch-configuration problem: grasps tried, ends of free
+            stretches among them.
         placement_samples: Placements tried in a region, its centre first.
         solve_by: How the original problem is attempted from a configuration, one of `SOLVE_BY`; see
             `planner.original_problem`.
@@ -92,7 +93,7 @@ class Settings(MbtsSettings):
     keep_share: float = 0.2
     subgoals_per_object: int = 5
     subgoal_size: float = 0.1
-    grasp_starts: int = 12
+    grasp_starts: int = 6
     placement_samples: int = 8
     solve_by: str = "pick-place"
     motion: str = "rrt"
@@ -165,6 +166,7 @@ PRESETS = {
         subgoals_per_object=30,
         motion_iterations=3000,
         motion_attempts=1,
+        grasp_starts=12,
         near_share=0.0,
         contact_share=0.0,
         restart_after=100_000,

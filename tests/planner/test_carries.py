@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from planner.carries import Carry, MotionPlanner, carries_of, path_length
+from converter.polyline import path_length
+from planner.carries import Carry, MotionPlanner, carries_of
 from planner.problem import Problem
 from planner.search import Search
 from planner.settings import Settings

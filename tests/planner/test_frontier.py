@@ -1,6 +1,7 @@
 """Order and budget of expansions."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -100,3 +101,12 @@ def test_steps_lead_from_the_start():
     grandchild = Node(configuration((0, 0)), child, second)
     assert start.steps() == []
     assert grandchild.steps() == [first, second]
+
+
+def test_length_adds_up_from_the_start():
+    """That of all approaches and carries on the way, a regrasp being an approach only."""
+    start = node()
+    there = PickPlace(0, vectors([0, 0], [3, 4]), vectors([3, 4], [3, 5]), np.zeros(2))
+    regrasp = PickPlace(0, vectors([3, 5], [5, 5]), vectors([5, 5]), np.zeros(2))
+    assert start.length == 0.0
+    assert start.followed_by([there, regrasp]).length == pytest.approx(5 + 1 + 2)

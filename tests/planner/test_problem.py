@@ -146,3 +146,13 @@ def test_grasp_obstacles_are_those_of_the_agent_about_the_object():
     held = problem.agent_space(configuration, held=0).points_free(offsets + configuration.objects[0])
     assert 0 < held.sum() < 200
     np.testing.assert_array_equal(relative.points_free(offsets), held)
+
+
+@pytest.mark.parametrize(
+    ("position", "distance"), [((1.0, 1.0), 0.0), ((1.1, 0.9), 0.0), ((0.0, 1.0), 0.9), ((0.6, 0.5), 0.5)]
+)
+def test_distance_to_the_goal_is_that_to_its_rectangle(position: tuple[float, float], distance: float):
+    """Zero inside and on the border, straight or diagonal outside."""
+    problem = Problem(room(goal=(1.0, 1.0), goal_size=(0.2, 0.2)))
+    configuration = problem.initial.with_object(problem.goal_index, np.array(position))
+    assert problem.distance_to_goal(configuration) == pytest.approx(distance)

@@ -169,6 +169,18 @@ def test_rejection_bounds_equal_configurations(monkeypatch: pytest.MonkeyPatch, 
         assert result.status is Status.TIMEOUT
 
 
+@pytest.mark.parametrize("longest", [0.0, 4.0, 6.0])
+def test_no_way_is_longer_than_allowed(longest: float):
+    """Every configuration in the tree leaves enough of the length to get to the goal as the crow flies."""
+    scene = room(wall(0, 0.5, 0.2, 3), objects=(body("obj", -1, 0),), agent=(-1.5, 0), goal=(1, 0))
+    problem = Problem(scene)
+    run = Search(problem, Settings(max_expansions=10), np.random.default_rng(0), max_length=longest)
+    run.run()
+    lengths = [node.length + problem.distance_to_goal(node.configuration) for node in run.nodes]
+    assert all(length <= longest for length in lengths)
+    assert (len(run.nodes) == 0) == (longest == 0.0)
+
+
 def test_nothing_is_expanded_more_than_twice(monkeypatch: pytest.MonkeyPatch):
     """Few placements with rejection: each configuration is expanded twice, then the search is exhausted and says why."""
     run, result = scripted(monkeypatch, Settings(), placements=lambda call: np.array([-1.0 - 0.2 * (call % 2), 0.0]))
