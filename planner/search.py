@@ -104,7 +104,7 @@ class Search:
         self.solution: Node | None = None
         self.counters: Counter[str] = Counter()
         self._best_score = -np.inf
-        self._frontier = Frontier(settings)
+        self._frontier = Frontier(settings, rng, problem.goal_index)
         self._rejection = Rejection(problem, settings)
         self._generator = (generator or GENERATORS[settings.generator])(problem, settings)
         # Other generators say themselves where candidates come from.

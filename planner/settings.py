@@ -76,6 +76,7 @@ class Settings(MbtsSettings):
             drive, and lets more pass the fewer grasps it can drive to; see `planner.rejection`.
         rejection_cell: Edge of the cells in which rejection compares object positions [m].
         novelty_cell: Edge of the cells in which prioritised selection counts expansions to break ties [m].
+        explore_share: Share of the selections that disregard the score; see `planner.frontier`.
         expansions: How often one configuration may be expanded.
         restart_after: Expansions after which the search starts anew; see `planner.restarts`.
         max_expansions: Expansions in all after which the search gives up.
@@ -105,6 +106,7 @@ class Settings(MbtsSettings):
     rejection_by_access: bool = True
     rejection_cell: float = 0.1
     novelty_cell: float = 0.2
+    explore_share: float = 0.2
     expansions: int = 2
     restart_after: int = 1000
     max_expansions: int = 100_000
@@ -126,7 +128,7 @@ class Settings(MbtsSettings):
         for name in _COUNTS:
             if getattr(self, name) < 1:
                 raise InputError(name, f"found {getattr(self, name)}, must be at least 1")
-        for name in ("near_share", "contact_share"):
+        for name in ("near_share", "contact_share", "explore_share"):
             if not 0 <= getattr(self, name) <= 1:
                 raise InputError(name, f"found {getattr(self, name)}, must be from 0 to 1")
         if not 0 < self.keep_share <= 1:
@@ -169,6 +171,7 @@ PRESETS = {
         grasp_starts=12,
         near_share=0.0,
         contact_share=0.0,
+        explore_share=0.0,
         restart_after=100_000,
         rejection_by_access=False,
     ),

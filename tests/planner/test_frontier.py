@@ -11,7 +11,9 @@ from planner.problem import Configuration
 from planner.settings import Settings
 from tests.planner.scenes import vectors
 
-PRIORITISED, OLDEST_FIRST = Settings(method="Rnd+FP"), Settings(method="Rnd+R")
+PRIORITISED = Settings(method="Rnd+FP", explore_share=0.0)
+OLDEST_FIRST = Settings(method="Rnd+R")
+EXPLORING = Settings(method="Rnd+FP", explore_share=1.0)
 scores = st.lists(st.sampled_from([0.0, 2.0, 5.0, 10.0, 15.0, 20.0]), min_size=1, max_size=12)
 
 
@@ -25,9 +27,9 @@ def node(score: float = 0.0) -> Node:
     return Node(configuration((0, 0)), score=score)
 
 
-def frontier_of(nodes: list[Node], settings: Settings) -> Frontier:
+def frontier_of(nodes: list[Node], settings: Settings, seed: int = 0) -> Frontier:
     """A frontier that the nodes entered in order."""
-    frontier = Frontier(settings)
+    frontier = Frontier(settings, np.random.default_rng(seed), goal_index=0)
     for one in nodes:
         frontier.add(one)
     return frontier
@@ -84,6 +86,31 @@ def test_a_new_node_goes_before_second_expansions():
     frontier.add(frontier.select_node())
     frontier.add(poor)
     assert [frontier.select_node(), frontier.select_node()] == [poor, good]
+
+
+@given(scores, st.sampled_from([0.2, 1.0]), st.integers(0, 5))
+def test_exploration_takes_every_node_as_often(values: list[float], share: float, seed: int):
+    """However they are drawn, all nodes are expanded once, and then all once more, best first."""
+    nodes = [node(value) for value in values]
+    frontier = frontier_of(nodes, Settings(method="Rnd+FP", explore_share=share), seed)
+    order = []
+    while frontier:
+        order.append(frontier.select_node())
+        frontier.add(order[-1])
+    assert sorted(map(id, order[: len(nodes)])) == sorted(map(id, nodes))
+    assert order[len(nodes) :] == sorted(order[: len(nodes)], key=lambda one: -one.score)
+
+
+def test_exploration_is_even_over_the_places_of_the_goal_object():
+    """Twenty good nodes with the goal-object at one place are drawn as often as the one poor node elsewhere."""
+    good = [Node(configuration((0, 0), (i, 0)), score=15.0) for i in range(20)]
+    poor = Node(configuration((1, 0), (0, 0)), score=0.0)
+    firsts = []
+    for seed in range(200):
+        first = frontier_of([*good, poor], EXPLORING, seed).select_node()
+        first.expansions = 0
+        firsts.append(first)
+    assert 70 <= sum(first is poor for first in firsts) <= 130
 
 
 def test_the_budget_of_expansions_is_a_setting():
