@@ -13,6 +13,7 @@ import logging
 import re
 import threading
 import time
+from concurrent.futures import CancelledError
 from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
@@ -94,10 +95,11 @@ def _result(future: "Future[Result]", job: Job[Task, Result], task: Task, elapse
         InputError: the cluster was shut down.
         WorkerStartError: the worker processes do not start.
     """
-    if future.status in {"cancelled", "lost"}:
-        raise InputError("--cluster", "the cluster has gone; the finished trials are kept")
     try:
+        # Where the Dask worker was lost together with the result, this waits until another has done the task anew.
         return future.result()
+    except CancelledError:
+        raise InputError("--cluster", "the cluster has gone; the finished trials are kept") from None
     except KilledWorker as error:
         return job.failed(task, Failure("error", f"its Dask worker was lost again and again: {error}", elapsed))
 
@@ -186,6 +188,6 @@ def _local_cluster(workers: int) -> LocalCluster:
         n_workers=workers,
         threads_per_worker=1,
         memory_limit=0,
-        dashboard_address=None,
+        dashboard_address=":0",
         silence_logs=logging.CRITICAL,
     )

@@ -1,6 +1,8 @@
 """Studies on a Dask cluster: a scheduler and workers of their own, in processes, as on a real one."""
 
 import sys
+import threading
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
@@ -12,7 +14,7 @@ from evaluate.compare import without_times
 from evaluate.specification import read_study
 from evaluate.store import TrialRow, TrialStore
 from evaluate.study import Study, run_study
-from evaluate.workers import Execute, run_tasks
+from evaluate.workers import Execute, Job, run_tasks
 from pcg.errors import InputError
 
 distributed = pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
@@ -28,7 +30,7 @@ def address() -> Iterator[str]:
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(Path(__file__).parent)
         with distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, memory_limit=0, dashboard_address=None, silence_logs=50
+            n_workers=2, threads_per_worker=1, memory_limit=0, dashboard_address=":0", silence_logs=50
         ) as cluster:
             yield cluster.scheduler_address
 
@@ -73,3 +75,17 @@ def test_no_scheduler_is_one_line(monkeypatch: pytest.MonkeyPatch):
         with pytest.raises(InputError, match="--cluster: no Dask scheduler answers at") as error:
             next(run_on_cluster(None, iter([]), wrong, "x"))
         assert "\n" not in str(error.value)
+
+
+@pytest.mark.slow
+def test_a_cluster_that_goes_is_one_line():
+    """When scheduler and workers end within a study, what was finished has been handed on and the rest is refused."""
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, memory_limit=0, dashboard_address=":0", silence_logs=50
+    ) as cluster:
+        job = Job(time.sleep, lambda task, failure: failure, lambda _: 60.0)
+        outcomes = run_on_cluster(job, iter([0.0, 60.0]), cluster.scheduler_address, "gone")
+        assert next(outcomes) == (0.0, None)
+        threading.Timer(0.5, cluster.close).start()
+        with pytest.raises(InputError, match="--cluster: the cluster has gone; the finished trials are kept"):
+            next(outcomes)
