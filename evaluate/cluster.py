@@ -13,8 +13,8 @@ import logging
 import re
 import threading
 import time
-from concurrent.futures import CancelledError
 from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import CancelledError
 from typing import Any
 
 from distributed import (

@@ -83,7 +83,7 @@ def test_a_cluster_that_goes_is_one_line():
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, memory_limit=0, dashboard_address=":0", silence_logs=50
     ) as cluster:
-        job = Job(time.sleep, lambda task, failure: failure, lambda _: 60.0)
+        job = Job(time.sleep, lambda _, failure: failure, lambda _: 60.0)
         outcomes = run_on_cluster(job, iter([0.0, 60.0]), cluster.scheduler_address, "gone")
         assert next(outcomes) == (0.0, None)
         threading.Timer(0.5, cluster.close).start()
