@@ -42,6 +42,9 @@ from pcg.xsb import format_level
 
 Observation = dict[str, npt.NDArray[Any]]
 
+_COUNTED = tuple(column.name.lower() for column in Column)
+"""What a step's information says about the map."""
+
 
 def observation_space(settings: EpisodeSettings) -> spaces.Dict[Any]:
     """The space of one observation."""
@@ -182,8 +185,9 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
         return {name: part[0] for name, part in observation_parts(self._episodes).items()}
 
     def _info(self) -> dict[str, Any]:
-        counted = {column.name.lower(): int(self._episodes.statistics[0, column]) for column in Column}
-        return {**counted, "steps": int(self._episodes.steps[0]), "changes": int(self._episodes.changes[0])}
+        episodes = self._episodes
+        counted = zip(_COUNTED, episodes.statistics[0].tolist(), strict=True)
+        return {**dict(counted), "steps": int(episodes.steps[0]), "changes": int(episodes.changes[0])}
 
 
 for _name in REPRESENTATIONS:

@@ -10,11 +10,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pcg.episode_kernel import advance
 from pcg.grid import BoolArray
 from pcg.level import TileArray
-from pcg.representation import KEEP, REPRESENTATIONS, IntArray, Representation
+from pcg.representation import REPRESENTATIONS, IntArray, Representation
 from pcg.reward import Control, FloatArray, RewardSettings, distances, reward
-from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, edit, make_judge, measure
+from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, make_judge, measure
 
 
 @dataclass(frozen=True)
@@ -129,12 +130,16 @@ class Episodes:
         distance: (n,) to what is wanted.
         steps: (n,) steps done.
         changes: (n,) changes done.
+        budgets: Changes and steps of an episode.
+        coordinates: (cells, 2) row and column of each cell.
         judge: Solves maps, with a cache of its verdicts.
     """
 
     def __init__(self, settings: EpisodeSettings, n: int, archive: TileArray | None = None) -> None:
         shape = settings.rows, settings.columns
         self.settings = settings
+        self.budgets = settings.max_changes, settings.max_steps
+        self.coordinates = np.indices(shape, dtype=np.int64).reshape(2, -1).T.copy()
         self.maps = np.zeros((n, *shape), dtype=np.uint8)
         self.frozen = np.zeros((n, *shape), dtype=np.uint8)
         self.controls = np.zeros((n, len(Control)))
@@ -147,7 +152,6 @@ class Episodes:
         self._wanted = settings.reward.wanted()
         self.judge = make_judge(archive, max_crates, settings.max_states)
         self._representation: Representation = REPRESENTATIONS[settings.representation](shape, n)
-        self._numbers = np.arange(n)
 
     @property
     def n(self) -> int:
@@ -177,17 +181,30 @@ class Episodes:
         return np.asarray(counted & (s[:, Column.SOLVABLE] == 1), dtype=np.bool_)
 
     def step(self, actions: IntArray) -> Transition:
-        """Carries out one action in each episode."""
-        cells, tiles = self._representation.step(actions)
-        maps, frozen = self.maps.reshape(self.n, -1), self.frozen.reshape(self.n, -1)
-        changed = (tiles != KEEP) & (tiles != maps[self._numbers, cells]) & (frozen[self._numbers, cells] == 0)
-        episodes = np.flatnonzero(changed)
-        edit(self.maps, episodes, cells[episodes], tiles[episodes], self.statistics, self.judge)
+        """Carries out one action in each episode.
+
+        Raises:
+            ValueError: an action is none of the representation's.
+        """
+        n_actions = self._representation.n_actions
+        # Compiled code does not look where it writes.
+        if actions.min() < 0 or actions.max() >= n_actions:
+            raise ValueError(f"actions must be 0 to {n_actions - 1}, found {actions.min()} to {actions.max()}")
         before = self.distance.copy()
-        distances(self.statistics, self.controls, episodes, self._wanted, self.distance)
+        changed = advance(
+            self.maps,
+            self.frozen,
+            *self._representation.step(actions),
+            self.statistics,
+            self.controls,
+            self.distance,
+            self.judge,
+            self._wanted,
+        )
         self.steps += 1
         self.changes += changed
         terminated = self.distance == 0
-        spent = (self.steps >= self.settings.max_steps) | (self.changes >= self.settings.max_changes)
+        max_changes, max_steps = self.budgets
+        spent = (self.steps >= max_steps) | (self.changes >= max_changes)
         gained = reward(before, self.distance, self.settings.reward)
         return Transition(gained, changed, terminated, spent & ~terminated)

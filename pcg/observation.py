@@ -39,18 +39,18 @@ EVERY: Final = slice(None)
 def scalars(episodes: Episodes, chosen: IntArray | slice = EVERY) -> Float32Array:
     """(n, SCALARS) counts, distances, flags, controls and what is left of the budgets of the chosen episodes."""
     settings = episodes.settings
-    numbers = np.empty((len(episodes.distance[chosen]), SCALARS), dtype=np.float32)
+    distance = episodes.distance[chosen]
+    numbers = np.empty((len(distance), SCALARS), dtype=np.float32)
     write_scalars(
         episodes.statistics[chosen],
         episodes.controls[chosen],
-        settings.reward.crates,
-        settings.reward.targets,
+        distance,
+        (episodes.changes[chosen], episodes.steps[chosen]),
+        episodes.budgets,
+        (settings.reward.crates, settings.reward.targets),
         settings.cells,
         numbers,
     )
-    numbers[:, -3] = np.minimum(episodes.distance[chosen] / 10, 2)
-    numbers[:, -2] = 1 - episodes.changes[chosen] / settings.max_changes
-    numbers[:, -1] = 1 - episodes.steps[chosen] / settings.max_steps
     return numbers
 
 
@@ -69,7 +69,7 @@ def observation_parts(episodes: Episodes, chosen: IntArray | slice = EVERY) -> d
         "scalars": scalars(episodes, chosen),
     }
     if episodes.representation.has_position:
-        parts["position"] = np.stack(np.divmod(episodes.representation.positions()[chosen], settings.columns), axis=1)
+        parts["position"] = episodes.coordinates[episodes.representation.positions()[chosen]]
     return parts
 
 

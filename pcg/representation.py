@@ -91,26 +91,32 @@ class Turtle:
 
     def __init__(self, shape: Cell, n: int) -> None:
         self._shape = shape
-        self._row = np.zeros(n, dtype=np.int64)
-        self._column = np.zeros(n, dtype=np.int64)
-        self._down = np.array([step[0] for step in DIRECTIONS.values()] + N_TILES * [0])
-        self._right = np.array([step[1] for step in DIRECTIONS.values()] + N_TILES * [0])
+        self._cells = np.zeros(n, dtype=np.int64)
+        rows, columns = np.indices(shape)
+        steps = [*DIRECTIONS.values(), *N_TILES * [(0, 0)]]
+        walks = [
+            np.clip(rows + down, 0, shape[0] - 1) * shape[1] + np.clip(columns + right, 0, shape[1] - 1)
+            for down, right in steps
+        ]
+        self._next = np.array(walks).reshape(len(steps), -1)
+        """(n_actions, cells) the cell that an action leads to."""
+        self._written = np.array([*len(DIRECTIONS) * [KEEP], *range(N_TILES)])
+        """(n_actions,) the tile that an action writes."""
 
     def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
         """Draws the cell where the turtle stands."""
-        self._row[episodes] = rng.integers(self._shape[0], size=len(episodes))
-        self._column[episodes] = rng.integers(self._shape[1], size=len(episodes))
+        rows = rng.integers(self._shape[0], size=len(episodes))
+        self._cells[episodes] = rows * self._shape[1] + rng.integers(self._shape[1], size=len(episodes))
 
     def positions(self) -> IntArray:
         """(n,) cells where the turtles stand."""
-        return self._row * self._shape[1] + self._column
+        return self._cells
 
     def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
         """Walks, or writes the tile where the turtle stands."""
-        cells = self.positions()
-        self._row = np.clip(self._row + self._down[actions], 0, self._shape[0] - 1)
-        self._column = np.clip(self._column + self._right[actions], 0, self._shape[1] - 1)
-        return cells, np.maximum(actions - len(DIRECTIONS), KEEP)
+        cells = self._cells
+        self._cells = self._next[actions, cells]
+        return cells, self._written[actions]
 
 
 class Wide:

@@ -1,4 +1,4 @@
-"""The scalars of an observation that come from statistics and controls, in compiled code.
+"""The scalars of an observation, in compiled code.
 
 Counts and distances are scaled so that most of them are within -2 to 2, and all within plus and minus `SCALAR_LIMIT`.
 """
@@ -8,10 +8,10 @@ from numba import njit
 
 from pcg.reward import Control, FloatArray, outside
 from pcg.solver_kernel import Int32Array
-from pcg.statistics_kernel import Column, Float32Array
+from pcg.statistics_kernel import Column, Float32Array, IntArray
 
 SCALARS = 24
-"""Scalars of an observation; the last three (distance and budgets) are written elsewhere."""
+"""Scalars of an observation."""
 
 SCALAR_LIMIT = 10.0
 
@@ -27,19 +27,29 @@ def _clipped(value: float, low: float, high: float) -> float:
 
 @njit(cache=True)
 def write_scalars(
-    statistics: Int32Array, controls: FloatArray, crates: int, targets: int, cells: int, out: Float32Array
+    statistics: Int32Array,
+    controls: FloatArray,
+    distance: FloatArray,
+    spent: tuple[IntArray, IntArray],
+    budgets: tuple[int, int],
+    wanted: tuple[int, int],
+    cells: int,
+    out: Float32Array,
 ) -> None:
-    """Writes all scalars but the last three.
+    """Writes counts, distances, flags, controls and what is left of the budgets.
 
     Args:
         statistics: (n, len(Column)).
         controls: (n, len(Control)).
-        crates: Crates wanted.
-        targets: Targets wanted.
+        distance: (n,) to what is wanted.
+        spent: (n,) changes and (n,) steps done.
+        budgets: Changes and steps of an episode.
+        wanted: Crates and targets wanted.
         cells: Cells of a map.
         out: (n, SCALARS), written to.
     """
     tenth = cells / 10
+    crates, targets = wanted
     for k in range(len(statistics)):
         s, c, o = statistics[k], controls[k], out[k]
         walls, pushes = s[_WALLS], s[_PUSHES]
@@ -65,3 +75,6 @@ def write_scalars(
         o[18] = c[_WANT_DEPENDENCY]
         o[19] = c[_WANT_OCCLUDED] * (2 * s[_OCCLUDED] - 1) * s[_SOLVABLE]
         o[20] = c[_WANT_DEPENDENCY] * (2 * s[_DEPENDENCY] - 1) * s[_SOLVABLE]
+        o[21] = min(distance[k] / 10, 2)
+        o[22] = 1 - spent[0][k] / budgets[0]
+        o[23] = 1 - spent[1][k] / budgets[1]

@@ -119,6 +119,17 @@ def test_start_maps_have_about_the_wanted_walls():
     assert (maps == Tile.CRATE).mean() == pytest.approx(0.01, abs=0.003)
 
 
+@pytest.mark.parametrize("name", REPRESENTATIONS)
+def test_unknown_actions_are_refused(name: str):
+    """An action out of range is named, and nothing is written."""
+    episodes, _ = begun(EpisodeSettings(name), 2)
+    before, last = episodes.maps.copy(), episodes.representation.n_actions - 1
+    for wrong in (-1, last + 1):
+        with pytest.raises(ValueError, match=f"0 to {last}"):
+            episodes.step(np.array([0, wrong]))
+    assert (episodes.maps == before).all()
+
+
 def test_unknown_representations_are_refused():
     """The message lists what there is."""
     with pytest.raises(ValueError, match="narrow, turtle, wide"):
