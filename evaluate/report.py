@@ -5,7 +5,7 @@ the page shows, not with plans.
 """
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from converter.plan import Plan
 from converter.scene import Scene
 from evaluate.plots import Plot, plots_of
 from evaluate.published import PublishedTime, success_by_occlusion
-from evaluate.scene_groups import groupings
+from evaluate.scene_groups import OCCLUSION, Grouping, groupings
 from evaluate.scene_records import SceneRecord, scene_records
 from evaluate.scene_statistics import SceneStatistics
 from evaluate.store import StoredTrials
@@ -106,14 +106,15 @@ def read_report(
     """
     frame = read_trials(folder)
     facts = {record.name: record.statistics for record in _told(scene_records(folder, frame), on_scene)}
+    groups = groupings(facts, dict(frame.select("scene", "preset").unique(maintain_order=True).iter_rows()))
     return Report(
         name=_title(folder),
         trials=len(frame),
         solved=int(frame["solved"].sum()),
         scenes=tuple(names_in(frame, "scene")),
         methods=tuple(names_in(frame, "method")),
-        tables=tuple(_tables(frame, facts, published)),
-        plots=tuple(plots_of(frame, groupings(facts))),
+        tables=tuple(_tables(frame, facts, groups, published)),
+        plots=tuple(plots_of(frame, groups)),
         provenance=_provenance(folder),
     )
 
@@ -147,6 +148,7 @@ def _title(folder: Path) -> str:
 def _tables(
     frame: pl.DataFrame,
     facts: Mapping[str, SceneStatistics],
+    groups: Sequence[Grouping],
     published: Mapping[tuple[str, str], PublishedTime] | None,
 ) -> Iterator[Table]:
     # Intervals come out the same in every report of the same trials.
@@ -154,8 +156,8 @@ def _tables(
     yield methods_table(frame, rng)
     if (comparisons := comparison_table(frame, rng)) is not None:
         yield comparisons
-    for grouping in groupings(facts):
-        beside = success_by_occlusion() if published is not None and grouping.name == "occlusion" else None
+    for grouping in groups:
+        beside = success_by_occlusion() if published is not None and grouping.name.startswith(OCCLUSION) else None
         yield success_table(frame, grouping, beside)
     yield times_table(frame, published)
     yield plans_table(frame)

@@ -6,6 +6,9 @@ from itertools import pairwise
 
 from evaluate.scene_statistics import SceneStatistics, generator_of
 
+OCCLUSION = "occlusion"
+"""Name of the grouping by occlusion, and what the names of those of one geometry begin with."""
+
 Facts = Mapping[str, SceneStatistics]
 """Statistics by the name of the scene."""
 
@@ -25,17 +28,34 @@ class Grouping:
     groups: Mapping[str, Sequence[str]]
 
 
-def groupings(facts: Facts) -> list[Grouping]:
-    """All groupings that tell scenes apart: those with at least two groups, and occlusion in any case."""
+def groupings(facts: Facts, presets: Mapping[str, str | None] | None = None) -> list[Grouping]:
+    """All groupings that tell scenes apart: those with at least two groups, and occlusion in any case.
+
+    Args:
+        facts: The scenes.
+        presets: Their geometries; where there are several, each has a grouping by occlusion of its own.
+    """
     found = [Grouping(name, title, _grouped(facts, names, group_of)) for name, title, names, group_of in _groupings()]
-    return [grouping for grouping in found if len(grouping.groups) > 1 or grouping.name == "occlusion"]
+    found = [grouping for grouping in found if len(grouping.groups) > 1 or grouping.name == OCCLUSION]
+    in_preset = {
+        preset: {name: statistics for name, statistics in facts.items() if (presets or {}).get(name) == preset}
+        for preset in dict.fromkeys((presets or {}).values())
+    }
+    if len(in_preset) < 2:
+        return found
+    return [*(_by_occlusion(preset or "other", scenes) for preset, scenes in in_preset.items()), *found[1:]]
+
+
+def _by_occlusion(preset: str, facts: Facts) -> Grouping:
+    _, _, names, group_of = _groupings()[0]
+    return Grouping(f"{OCCLUSION}-{preset}", f"occlusion in the geometry {preset}", _grouped(facts, names, group_of))
 
 
 def _groupings() -> list[tuple[str, str, Sequence[str] | None, Callable[[str, SceneStatistics], str | None]]]:
     """Name, title, order of the groups (None for that of the scenes), and what group a scene belongs to."""
     density, passage, pick_places = (0.0, 0.1, 0.15, 0.2, 0.3), (0.0, 0.41, 0.5, 0.7, 1.0), (1, 2, 3, 4, 6)
     return [
-        ("occlusion", "occlusion", ("not occluded", "occluded"), lambda _, s: _OCCLUDED[s.occluded]),
+        (OCCLUSION, "occlusion", ("not occluded", "occluded"), lambda _, s: _OCCLUDED[s.occluded]),
         ("agent", "generator of the level", None, lambda name, _: generator_of(name)),
         ("density", "wall density", _ranges(density), lambda _, s: _range(density, s.wall_density)),
         ("passage", "narrowest passage [m]", _ranges(passage), lambda _, s: _range(passage, s.narrowest_passage_m)),

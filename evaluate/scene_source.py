@@ -1,6 +1,8 @@
 """Where the scenes of a study come from: scene files and level sets by path, filtered, in one or both geometries.
 
-`${NAME}` in a path stands for an environment variable. Levels are converted on the fly with the default sizes.
+`${NAME}` in a path stands for an environment variable. Levels are converted on the fly with the default sizes. Scenes
+that are invalid at the start are left out, and said to be: in the geometry `published` the outer walls reach into the
+border cells, so that a level whose robot begins there makes no valid scene.
 """
 
 import glob
@@ -22,6 +24,7 @@ from evaluate.names import safe_name
 from evaluate.scene_filter import Condition, fulfils, require_facts
 from pcg.errors import InputError
 from pcg.validation import Document
+from planner.problem import Problem
 
 PresetName = Literal["clear", "published"]
 Presets = Annotated[list[PresetName], Field(min_length=1)]
@@ -87,20 +90,40 @@ def read_sources(sources: Sequence[SceneSourceDocument], reading: Reading, where
                 raise InputError(place, str(error)) from None
             found.notes.append(f"{place}: left out: {error}")
             continue
-        found.scenes += _taken(source, paths, reading, place)
+        _take(found, source, paths, reading, place)
     return found
 
 
-def _taken(source: SceneSourceDocument, paths: Sequence[Path], reading: Reading, place: str) -> list[Scene]:
+def _take(found: FoundScenes, source: SceneSourceDocument, paths: Sequence[Path], reading: Reading, place: str) -> None:
     presets: Sequence[str | None] = source.presets or reading.presets
-    taken: list[Scene] = []
+    before = len(found.scenes)
     for preset in presets:
         scenes = [scene for path in paths for scene in _read(path, preset, reading.tolerance)]
         suitable = [scene for scene in scenes if fulfils(scene, source.where)] if source.where else scenes
-        taken += _spread(suitable, source.take, f"{place}.take")
-    if not taken:
-        raise InputError(place, f"none of the scenes in {source.files!r} meets the conditions")
-    return taken
+        faults = {id(scene): fault for scene in suitable if (fault := _fault(scene)) is not None}
+        if faults:
+            found.notes.append(_left_out(place, preset, len(suitable), list(faults.values())))
+        valid = [scene for scene in suitable if id(scene) not in faults]
+        found.scenes += _spread(valid, source.take, f"{place}.take")
+    if len(found.scenes) == before:
+        wanted = "meets the conditions and is valid" if source.where else "is valid"
+        raise InputError(place, f"none of the scenes in {source.files!r} {wanted}")
+
+
+def _fault(scene: Scene) -> str | None:
+    """Why a scene is invalid at the start; None if it is not."""
+    try:
+        Problem(scene)
+    except InputError as error:
+        return str(error)
+    return None
+
+
+def _left_out(place: str, preset: str | None, n: int, faults: Sequence[str]) -> str:
+    geometry = "" if preset is None else f" in the geometry {preset}"
+    return (
+        f"{place}: left out: {len(faults)} of {n} scenes{geometry}, which are invalid at the start; first {faults[0]}"
+    )
 
 
 def _read(path: Path, preset: str | None, tolerance: float | None) -> Iterator[Scene]:

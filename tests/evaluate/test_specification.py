@@ -19,14 +19,25 @@ methods: [Rnd+FPR, Rnd+R]
 seeds: 2
 """
 LEVELS = """; one
-#######
-#@ $ .#
-#  $  #
-#######
+#########
+#       #
+# @ $ . #
+#   $   #
+#       #
+#########
 
 ; two
+#########
+#       #
+# @#$ . #
+#   $   #
+#       #
+#########
+"""
+AT_THE_BORDER = """
+; three
 #######
-#@#$ .#
+#@ $ .#
 #  $  #
 #######
 """
@@ -100,6 +111,27 @@ def test_levels_are_converted_in_both_geometries(spec: Path):
     }.items():
         spec.write_text(SPEC.replace("scenes: [scenes/*.yaml]", source.replace("WHERE", where)))
         assert [(scene.name, scene.preset) for scene in read_study(spec).scenes] == expected
+
+
+def test_invalid_scenes_are_left_out_with_a_note(spec: Path):
+    """In `published` the outer wall reaches to where the robot of the third level begins; alone that is refused."""
+    (spec.parent / "levels.xsb").write_text(LEVELS + AT_THE_BORDER)
+    text = SPEC.replace("scenes/*.yaml", "{files: levels.xsb, presets: [clear, published], where: {name: t*}}")
+    spec.write_text(text)
+    study = read_study(spec)
+    assert [(scene.name, scene.preset) for scene in study.scenes] == [
+        ("two", "clear"),
+        ("three", "clear"),
+        ("two", "published"),
+    ]
+    (note,) = study.notes
+    expected = (
+        r"scenes\[0\]: left out: 1 of 2 scenes in the geometry published, which are invalid .*; first three: agent"
+    )
+    assert re.search(expected, note)
+    spec.write_text(text.replace("clear, ", "").replace("t*", "three"))
+    with pytest.raises(InputError, match="none of the scenes in 'levels.xsb' meets the conditions and is valid"):
+        read_study(spec)
 
 
 def test_scenes_may_be_missing(spec: Path, monkeypatch: pytest.MonkeyPatch):

@@ -55,3 +55,14 @@ def test_groups():
     assert list(found["pick-places"]) == ["2", "6 or more", "none known"]
     assert found["monotone"] == {"monotone": ["m3-1"], "not monotone": ["b1-7"]}
     assert "passage" not in found
+
+
+def test_each_geometry_has_its_own_groups_by_occlusion():
+    """With scenes in two geometries there are two groupings by occlusion, of their scenes; with one there is one."""
+    facts = {"a": FACTS, "b": replace(FACTS, occluded=True), "c": FACTS}
+    presets = {"a": "clear", "b": "clear", "c": "published"}
+    found = {grouping.name: dict(grouping.groups) for grouping in groupings(facts, presets)}
+    assert found["occlusion-clear"] == {"not occluded": ["a"], "occluded": ["b"]}
+    assert found["occlusion-published"] == {"not occluded": ["c"]}
+    assert "occlusion" not in found
+    assert [grouping.name for grouping in groupings(facts, dict.fromkeys(facts, "clear"))] == ["occlusion"]
