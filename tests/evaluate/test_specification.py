@@ -130,7 +130,7 @@ def test_invalid_scenes_are_left_out_with_a_note(spec: Path):
     )
     assert re.search(expected, note)
     spec.write_text(text.replace("clear, ", "").replace("t*", "three"))
-    with pytest.raises(InputError, match="none of the scenes in 'levels.xsb' meets the conditions and is valid"):
+    with pytest.raises(InputError, match=r"none of the scenes in 'levels[.]xsb' meets the conditions and is valid"):
         read_study(spec)
 
 
