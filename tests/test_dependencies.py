@@ -74,7 +74,8 @@ HOMES = {
     "shapely": {"evaluate/bench_peers.py", "planner/penetration.py"},
     "stable_baselines3": {"pcg/train.py"},
     "torch": {"pcg/train.py"},
-    "typer": {"evaluate/cli.py"},
+    "typer": {"evaluate/cli.py"}
+    | {f"evaluate/commands/{path.name}" for path in (ROOT / "evaluate" / "commands").glob("[a-z]*.py")},
     "yaml": {"pcg/yaml_text.py"},
 }
 """The only modules that import a library."""

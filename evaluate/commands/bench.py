@@ -1,10 +1,14 @@
 """`manipuzzle bench`: the performance table."""
 
 from dataclasses import asdict
+from typing import Annotated
+
+import typer
 
 from evaluate.bench import BenchRow, measure
 from evaluate.bench_contests import QUICK, Effort, contests
 from evaluate.bench_study import TRIAL_S, measure_study
+from evaluate.commands.options import Json, application
 from evaluate.number_text import duration
 from evaluate.output import print_json, print_line, print_table, progress
 
@@ -12,9 +16,31 @@ RUNS, BURNING = 5, 60
 """Studies with one worker and with two, and their trials."""
 
 
-def run(*, quick: bool, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.bench`."""
-    effort = QUICK if quick else Effort()
+app = application()
+
+
+@app.command()
+def run(
+    *,
+    quick: Annotated[bool, typer.Option("--quick", help="A few seconds; the figures mean little.")] = False,
+    study: Annotated[bool, typer.Option("--study", help="Time the running of studies instead.")] = False,
+    trials: Annotated[
+        int, typer.Option(metavar="N", min=10, max=10_000_000, help="With --study: trials that do nothing.")
+    ] = 10_000,
+    json: Json = False,
+) -> bool:
+    """Time motions, grasps, collision tests and solving, each beside a peer timed in the same run; about a minute.
+
+    Example:  manipuzzle bench
+    """
+    if study:
+        _time_studies(trials, as_json=json)
+    else:
+        _time_parts(QUICK if quick else Effort(), as_json=json)
+    return True
+
+
+def _time_parts(effort: Effort, *, as_json: bool) -> None:
     entered = list(contests(effort))
     rows: list[BenchRow] = []
     with progress() as bar:
@@ -29,21 +55,18 @@ def run(*, quick: bool, as_json: bool) -> bool:
         columns = ["contest", "median", "95 %", "seeds", "peer", "peer's median", "times faster"]
         print_table(columns, [_cells(row) for row in rows])
         print_line(f"a puzzle that is not solved within {effort.time_limit:g} s counts with this time")
-    return True
 
 
-def run_study_bench(trials: int, *, as_json: bool) -> bool:
-    """Runs the command with `--study`; see `evaluate.cli.bench`."""
+def _time_studies(trials: int, *, as_json: bool) -> None:
     found = measure_study(trials, burning=BURNING, runs=RUNS)
     if as_json:
         print_json({**asdict(found), "speedup": found.speedup})
-        return True
+        return
     print_line(
         f"{found.trials} trials that do nothing: {duration(found.trial_s)} each, of which the coordinator works "
         f"{duration(found.coordinator_s)}; it takes {found.memory_mb:.0f} MiB"
     )
     print_line(f"two workers: {found.speedup:.2f} times as fast as one, {RUNS} runs of {BURNING} trials of {TRIAL_S} s")
-    return True
 
 
 def _cells(row: BenchRow) -> tuple[object, ...]:

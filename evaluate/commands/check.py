@@ -4,6 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from converter.image_file import write_png
 from converter.plan import Plan, read_plan
@@ -11,6 +14,7 @@ from converter.preview.picture import report_drawing, summary
 from converter.preview.report import SceneReport
 from converter.raster import paint
 from converter.scene import Scene
+from evaluate.commands.options import Json, Preset, SceneFiles, Tolerance, Workers, application
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.names import safe_name
 from evaluate.output import print_json, print_line, print_table, progress
@@ -18,6 +22,8 @@ from evaluate.parallel import in_order
 from evaluate.scene_check import check
 from pcg.errors import InputError
 from planner.verify import require_same_scene
+
+app = application()
 
 PICTURE_WIDTH_PX = 600
 
@@ -37,25 +43,55 @@ class Request:
     picture: Path | None = None
 
 
+@app.command()
 def run(
-    paths: Sequence[Path],
-    plans: Sequence[Path],
-    request: Request,
+    scenes: SceneFiles,
     *,
-    preset: str | None,
-    tolerance: float | None,
-    workers: int,
-    as_json: bool,
+    plan: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="PLAN", help="Play a plan of one of the scenes back; repeat for more.", show_default=False
+        ),
+    ] = None,
+    push: Annotated[
+        float | None,
+        typer.Option(
+            metavar="METRES",
+            min=0,
+            max=100,
+            help="Also drive this far against every object, from four sides.",
+            show_default=False,
+        ),
+    ] = None,
+    static: Annotated[bool, typer.Option("--static", help="Only check the scenes at rest.")] = False,
+    picture: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Draw what was found to DIR/{scene}.png.", show_default=False)
+    ] = None,
+    preset: Preset = None,
+    tolerance: Tolerance = None,
+    workers: Workers = 1,
+    json: Json = False,
 ) -> bool:
-    """Runs the command; see `evaluate.cli.check`."""
-    scenes = read_scenes(paths, preset, tolerance)
-    tasks = list(zip(scenes, _plans_of(scenes, plans), strict=True))
-    if request.picture is not None:
-        require_writable(request.picture)
+    """Check scenes in a 2D physics preview: at rest, driving to every object and into the goal, playing plans back.
+
+    At rest nothing may overlap or move. A disc that is told how fast to go then follows the exact planner's shortest
+    way to each object and into the goal; contacts and what it pushes are reported. In a plan that is played back nothing
+    but the carried object may move by more than a millimetre.
+
+    Exit status 1 if a scene is not valid, the disc does not arrive at the end of its way, or a plan does not play back.
+    That no way leads to an object is reported but no flaw, for others may have to be carried away first.
+
+    Example:  manipuzzle check out/scenes/*.yaml --picture out/checks --workers 2
+    """
+    request = Request(static=static, push=push, picture=picture)
+    found = read_scenes(scenes, preset, tolerance)
+    tasks = list(zip(found, _plans_of(found, plan or []), strict=True))
+    if picture is not None:
+        require_writable(picture)
     with progress() as bar:
-        found = in_order(partial(_checked, request), tasks, workers)
-        reports = list(bar.track(found, total=len(tasks), description="scenes"))
-    if as_json:
+        results = in_order(partial(_checked, request), tasks, workers)
+        reports = list(bar.track(results, total=len(tasks), description="scenes"))
+    if json:
         print_json({"scenes": [report.document() for report in reports]})
     else:
         print_table(["scene", "all well", "found"], [(r.scene, r.all_well, summary(r)) for r in reports])

@@ -8,19 +8,115 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from converter.convert import ConversionSettings, convert_level
 from converter.formats import write_scene
 from converter.formats.mjcf import Movable, write_mjcf
 from converter.preset import CLEAR, PRESETS
 from converter.scene import Scene
+from evaluate.commands.options import Json, Out, Tolerance, Workers, application
 from evaluate.inputs import adapted, is_scene, iter_playable_levels, read_scene_file, require_choice, require_writable
 from evaluate.names import require_distinct, safe_name
 from evaluate.output import print_json, print_line, print_table, progress
 from evaluate.parallel import in_order
 from pcg.errors import InputError
 from pcg.level import Level
+
+app = application()
+
+
+@app.command()
+def run(
+    inputs: Annotated[list[Path], typer.Argument(metavar="LEVEL|SCENE", help="XSB files, level sets, scene files.")],
+    *,
+    out: Out,
+    to: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="Format of the scenes: yaml, g (rai), mjcf (MuJoCo) or mjcf-mocap, in which a program moves the objects.",
+        ),
+    ] = "yaml",
+    preset: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Geometry: clear (default for levels) or published.", show_default=False),
+    ] = None,
+    tolerance: Tolerance = None,
+    cell: Annotated[float, typer.Option(metavar="METRES", help="Side of a cell.")] = 0.4,
+    agent_radius: Annotated[
+        float | None, typer.Option(metavar="METRES", help="By default that of the preset.", show_default=False)
+    ] = None,
+    agent_height: Annotated[float, typer.Option(metavar="METRES", help="Height of the agent.")] = 0.2,
+    object_size: Annotated[float, typer.Option(metavar="METRES", help="Side of the box that a crate becomes.")] = 0.2,
+    object_height: Annotated[
+        float | None, typer.Option(metavar="METRES", help="By default objects are cubes.", show_default=False)
+    ] = None,
+    goal_size: Annotated[float, typer.Option(metavar="METRES", help="Side of the goal.")] = 0.35,
+    wall_height: Annotated[float, typer.Option(metavar="METRES", help="Height of all walls.")] = 0.4,
+    merge_walls: Annotated[
+        bool, typer.Option("--merge-walls", help="Make adjacent wall cells the fewest bodies that fill the same space.")
+    ] = False,
+    size_jitter: Annotated[
+        float, typer.Option(metavar="SHARE", help="Make each side of each object up to this share longer or shorter.")
+    ] = 0.0,
+    yaw_jitter: Annotated[
+        float, typer.Option(metavar="RADIANS", help="Turn each object by up to this angle, either way.")
+    ] = 0.0,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the jitter.")] = 0,
+    goal_crate: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="Crate, counted from 1 in reading order, that becomes the goal-object; by default the one that the "
+            "level set names or the solver brings to the goal.",
+            show_default=False,
+        ),
+    ] = None,
+    drop_targets: Annotated[
+        bool, typer.Option("--drop-targets", help="Remove all targets but the first, which is the goal.")
+    ] = False,
+    drop_crates: Annotated[
+        bool, typer.Option("--drop-crates", help="Remove all crates but the goal crate, and the surplus targets.")
+    ] = False,
+    workers: Workers = 1,
+    json: Json = False,
+) -> bool:
+    """Convert levels and scenes to scene files DIR/{name}.yaml, .g, or .xml for MuJoCo.
+
+    Of the options only --to, --preset and --tolerance apply to scenes. A level's scene records all of them.
+
+    Example:  manipuzzle convert out/levels --out out/scenes --merge-walls --yaw-jitter 0.5 --seed 1
+    """
+    conversion = conversion_of(
+        out,
+        to,
+        preset,
+        tolerance,
+        cell=cell,
+        wall_height=wall_height,
+        object_size=object_size,
+        object_height=object_height,
+        goal_size=goal_size,
+        agent_radius=agent_radius,
+        agent_height=agent_height,
+        merge_walls=merge_walls,
+        size_jitter=size_jitter,
+        yaw_jitter=yaw_jitter,
+        seed=seed,
+        goal_crate=goal_crate,
+        drop_targets=drop_targets,
+        drop_crates=drop_crates,
+    )
+    results = convert_all(inputs, conversion, workers)
+    if json:
+        print_json({"scenes": [{"scene": name, "file": file} for name, file in results]})
+    else:
+        print_table(["scene", "file"], results)
+        print_line(f"{len(results)} scenes written to {out}")
+    return True
 
 
 @dataclass(frozen=True)
@@ -93,22 +189,18 @@ def scene_of(level: Level, settings: ConversionSettings | None = None, tolerance
     return adapted(replace(scene, name=safe_name(level.name)), None, tolerance)
 
 
-def run(inputs: Sequence[Path], conversion: Conversion, *, workers: int, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.convert`."""
+def convert_all(inputs: Sequence[Path], conversion: Conversion, workers: int) -> list[tuple[str, str]]:
+    """Writes the scene of every input; names and files.
+
+    Raises:
+        InputError: an input cannot be converted, two become one file, or the folder cannot be written.
+    """
     names = [source.name for source in _inputs(inputs, conversion)]
     require_distinct(names, "inputs")
     require_writable(conversion.out)
-    results = []
     with progress() as bar:
         files = in_order(partial(_convert, conversion), _inputs(inputs, conversion), workers)
-        for name, file in zip(names, bar.track(files, total=len(names), description="scenes"), strict=True):
-            results.append((name, file))
-    if as_json:
-        print_json({"scenes": [{"scene": name, "file": file} for name, file in results]})
-    else:
-        print_table(["scene", "file"], results)
-        print_line(f"{len(results)} scenes written to {conversion.out}")
-    return True
+        return list(zip(names, bar.track(files, total=len(names), description="scenes"), strict=True))
 
 
 def _inputs(paths: Sequence[Path], conversion: Conversion) -> Iterator[_Input]:

@@ -2,9 +2,13 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from evaluate.commands.options import Json, Out, application
 from evaluate.expressive_range import expressive_range_figure
-from evaluate.inputs import require_writable
+from evaluate.inputs import require_choice, require_writable
 from evaluate.output import print_json, print_line, progress
 from evaluate.plot_style import FORMATS, write_figure
 from pcg.agents import Agent, read_agents
@@ -15,24 +19,48 @@ from pcg.policy_source import PolicySource, policies_of
 from pcg.random_source import RandomSource
 from pcg.request import LevelSource
 
+app = application(
+    help="""Build the corpus of all agents, check that it can be built again, plot it.
 
-def build(out: Path, *, baseline: bool, as_json: bool) -> bool:
-    """Runs `corpus build`; see `evaluate.cli.corpus_build`."""
+    Example:  manipuzzle corpus check data/corpus
+    """,
+)
+
+Baseline = Annotated[
+    bool, typer.Option("--baseline", help="Let the random baseline answer the agents' requests, not their policies.")
+]
+
+
+@app.command(short_help="Generate, select, split and document the corpus.")
+def build(*, out: Out, baseline: Baseline = False, json: Json = False) -> bool:
+    """Let every agent of data/agents.yaml make 100 levels and keep 10: levels.xsb, manifest.jsonl and a data card.
+
+    Example:  manipuzzle corpus build --out data/corpus
+    """
     require_writable(out)
     levels = _levels(baseline=baseline)
     write_corpus(out, levels)
-    if as_json:
+    if json:
         print_json({"levels": len(levels), "out": str(out)})
     else:
         print_line(f"{len(levels)} levels written to {out}")
     return True
 
 
-def check(folder: Path, *, baseline: bool, as_json: bool) -> bool:
-    """Runs `corpus check`; see `evaluate.cli.corpus_check`."""
+@app.command(short_help="Build the corpus anew and compare.")
+def check(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the corpus.")],
+    *,
+    baseline: Baseline = False,
+    json: Json = False,
+) -> bool:
+    """Build the corpus anew, in memory, and report the levels that differ. Exit status 1 if one does.
+
+    Example:  manipuzzle corpus check data/corpus
+    """
     read_manifest(folder / MANIFEST_FILE)
     found = list(differences(folder, _levels(baseline=baseline)))
-    if as_json:
+    if json:
         print_json({"differences": found, "corpus": str(folder)})
     else:
         for difference in found:
@@ -41,10 +69,19 @@ def check(folder: Path, *, baseline: bool, as_json: bool) -> bool:
     return not found
 
 
-def plot(folders: list[Path], out: Path, format_: str, *, as_json: bool) -> bool:
-    """Runs `corpus plot`; see `evaluate.cli.corpus_plot`."""
-    if format_ not in FORMATS:
-        raise InputError("--format", f"found {format_!r}, allowed are {', '.join(FORMATS)}")
+@app.command(short_help="Draw the expressive range of level sets.")
+def plot(
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR", help="Level sets.")],
+    *,
+    out: Out,
+    format_: Annotated[str, typer.Option("--format", metavar="NAME", help="svg, pdf or png.")] = "png",
+    json: Json = False,
+) -> bool:
+    """Draw histograms of walls and pushes, one a level set: DIR/expressive-range.{format}.
+
+    Example:  manipuzzle corpus plot data/corpus out/levels --out out/pictures
+    """
+    require_choice("--format", format_, FORMATS)
     level_sets = {}
     for folder in folders:
         entries = [entry for entry in read_manifest(folder / MANIFEST_FILE) if entry.pushes is not None]
@@ -54,7 +91,7 @@ def plot(folders: list[Path], out: Path, format_: str, *, as_json: bool) -> bool
     require_writable(out)
     path = out / f"expressive-range.{format_}"
     write_figure(path, expressive_range_figure(level_sets), format_)
-    if as_json:
+    if json:
         print_json({"picture": str(path)})
     else:
         print_line(f"written to {path}")

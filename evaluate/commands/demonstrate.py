@@ -3,17 +3,55 @@
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import typer
 
 from converter.plan import Subgoal
+from evaluate.commands.options import Json, SceneFile, application
 from evaluate.inputs import read_scene_file
 from evaluate.output import log, print_json, print_line
 from pcg.errors import InputError
 from planner.demonstration import Demonstration, require_suitable, write_demonstration
 from planner.problem import Problem
 
+app = application()
+
 FORM = "object:x,y"
+
+
+@app.command()
+def run(
+    scene: SceneFile,
+    *,
+    out: Annotated[Path, typer.Option(metavar="FILE", help="Demonstration file (.yaml).")],
+    point: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="OBJECT:X,Y", help="Where an object is put next [m]; repeat in order.", show_default=False
+        ),
+    ] = None,
+    json: Json = False,
+) -> bool:
+    """Write a demonstration for method Hum: positions of objects, in order, from --point or from lines on stdin.
+
+    Method Hum+R takes those of data/human, called after their scenes.
+
+    Example:  manipuzzle demonstrate data/puzzles/wall.yaml --point obj:-1.75,-1.0 --out out/human/wall.yaml
+    """
+    setting = read_scene_file(scene)
+    problem = Problem(setting)
+    if not point and sys.stdin.isatty():
+        log(f"{FORM}, one a line, in order ({', '.join(setting.object_names)}); Ctrl-D ends")
+    demonstration = Demonstration(setting.name, typed_subgoals(point or [], sys.stdin))
+    require_suitable(problem, demonstration, "demonstration")
+    write_demonstration(out, demonstration)
+    if json:
+        print_json({"scene": setting.name, "subgoals": len(demonstration.subgoals), "file": str(out)})
+    else:
+        print_line(f"{len(demonstration.subgoals)} subgoals of {setting.name} written to {out}")
+    return True
 
 
 def subgoal_of(text: str, where: str) -> Subgoal:
@@ -40,19 +78,3 @@ def typed_subgoals(points: Sequence[str], lines: Iterable[str]) -> tuple[Subgoal
     if not texts:
         raise InputError("subgoals", f"none given; use --point {FORM} or one {FORM} a line on stdin")
     return tuple(subgoal_of(text, where) for where, text in texts)
-
-
-def run(path: Path, out: Path, points: Sequence[str], *, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.demonstrate`."""
-    scene = read_scene_file(path)
-    problem = Problem(scene)
-    if not points and sys.stdin.isatty():
-        log(f"{FORM}, one a line, in order ({', '.join(scene.object_names)}); Ctrl-D ends")
-    demonstration = Demonstration(scene.name, typed_subgoals(points, sys.stdin))
-    require_suitable(problem, demonstration, "demonstration")
-    write_demonstration(out, demonstration)
-    if as_json:
-        print_json({"scene": scene.name, "subgoals": len(demonstration.subgoals), "file": str(out)})
-    else:
-        print_line(f"{len(demonstration.subgoals)} subgoals of {scene.name} written to {out}")
-    return True

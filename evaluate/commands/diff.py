@@ -1,17 +1,32 @@
 """`manipuzzle diff`: two results folders trial by trial."""
 
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from evaluate.commands.options import Json, application
 from evaluate.compare import Comparison, compare
 from evaluate.output import print_json, print_line, print_table
 from evaluate.store import StoredTrials
 
+app = application()
 
-def run(first: Path, second: Path, *, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.diff`."""
+
+@app.command()
+def run(
+    first: Annotated[Path, typer.Argument(metavar="DIR", help="Results of a study.")],
+    second: Annotated[Path, typer.Argument(metavar="DIR", help="Results of another one.")],
+    *,
+    json: Json = False,
+) -> bool:
+    """Compare two results trial by trial: same scene, method and seed. Exit status 1 if one solves what the other not.
+
+    Example:  manipuzzle diff out/study out/more
+    """
     with StoredTrials(first) as one, StoredTrials(second) as other:
         found = compare(one, other)
-    if as_json:
+    if json:
         print_json(
             {
                 "methods": {name: _document(each) for name, each in found.methods.items()},

@@ -1,23 +1,68 @@
 """`manipuzzle export`: plans as tables over time, or as PDDL."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from converter.formats.pddl import DOMAIN, plan_text, problem_text
 from converter.formats.plan_tables import write_csv, write_npz
 from converter.plan import Plan
 from converter.scene import Scene
 from converter.trajectory import SpeedProfile, TimedPlan
+from evaluate.commands.options import Json, Out, SceneOfPlans, application
 from evaluate.inputs import read_plan_with_scene, read_scene_file, require_choice, require_writable
 from evaluate.names import require_distinct, safe_name
 from evaluate.output import print_json, print_line, print_table, progress
 from pcg.files import write_text
 
+app = application()
+
 FORMATS = ("csv", "npz", "pddl")
 
 Writer = Callable[[Path, str, Scene, Plan], list[Path]]
 """Writes a plan into a folder under a name and returns its files."""
+
+
+@app.command()
+def run(
+    plans: Annotated[list[Path], typer.Argument(metavar="PLAN", help="Plan files (.json).")],
+    *,
+    out: Out,
+    to: Annotated[str, typer.Option(metavar="NAME", help="csv, npz (NumPy) or pddl.")] = "csv",
+    speed: Annotated[float, typer.Option(metavar="M/S", help="Full speed of the agent.")] = 0.5,
+    acceleration: Annotated[
+        float, typer.Option(metavar="M/S2", min=0, help="Between way-points; 0 for constant speed without stops.")
+    ] = 1.0,
+    grasp_time: Annotated[float, typer.Option(metavar="SECONDS", help="Rest at each grasp and each release.")] = 0.0,
+    step: Annotated[float, typer.Option(metavar="SECONDS", help="Time between rows; way-points are rows too.")] = 0.02,
+    scene: SceneOfPlans = None,
+    json: Json = False,
+) -> bool:
+    """Export plans to DIR/{name}.csv or .npz, or as PDDL to {name}-domain.pddl, {name}-problem.pddl and {name}.plan.
+
+    Example:  manipuzzle export out/plans/*.json --to npz --speed 0.5 --step 0.02 --out out/trajectories
+    """
+    profile = profile_of(speed, acceleration, grasp_time)
+    require_choice("--to", to, FORMATS)
+    given = None if scene is None else read_scene_file(scene)
+    found = [read_plan_with_scene(path, given) for path in plans]
+    names = [safe_name(path.stem) for path in plans]
+    require_distinct(names, "plans")
+    require_writable(out)
+    write = write_pddl if to == "pddl" else table_writer(to, profile, step)
+    results: list[tuple[str, list[Path]]] = []
+    with progress() as bar:
+        for name, (plan, of_plan) in zip(names, bar.track(found, description="plans"), strict=True):
+            results.append((name, write(out, name, of_plan, plan)))
+    if json:
+        print_json({"plans": [{"plan": name, "files": [str(file) for file in files]} for name, files in results]})
+    else:
+        print_table(["plan", "file"], [(name, str(file)) for name, files in results for file in files])
+        print_line(f"{len(results)} plans exported to {out}")
+    return True
 
 
 def profile_of(speed: float, acceleration: float, grasp_time: float) -> SpeedProfile:
@@ -53,33 +98,3 @@ def write_pddl(folder: Path, name: str, scene: Scene, plan: Plan) -> list[Path]:
         write_text(folder / file_name, text)
         files.append(folder / file_name)
     return files
-
-
-def run(
-    paths: Sequence[Path],
-    out: Path,
-    *,
-    to: str,
-    scene_path: Path | None,
-    profile: SpeedProfile,
-    step: float,
-    as_json: bool,
-) -> bool:
-    """Runs the command; see `evaluate.cli.export`."""
-    require_choice("--to", to, FORMATS)
-    given = None if scene_path is None else read_scene_file(scene_path)
-    plans = [read_plan_with_scene(path, given) for path in paths]
-    names = [safe_name(path.stem) for path in paths]
-    require_distinct(names, "plans")
-    require_writable(out)
-    write = write_pddl if to == "pddl" else table_writer(to, profile, step)
-    results: list[tuple[str, list[Path]]] = []
-    with progress() as bar:
-        for name, (plan, scene) in zip(names, bar.track(plans, description="plans"), strict=True):
-            results.append((name, write(out, name, scene, plan)))
-    if as_json:
-        print_json({"plans": [{"plan": name, "files": [str(file) for file in files]} for name, files in results]})
-    else:
-        print_table(["plan", "file"], [(name, str(file)) for name, files in results for file in files])
-        print_line(f"{len(results)} plans exported to {out}")
-    return True

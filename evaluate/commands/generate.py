@@ -5,8 +5,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, cast
 
+import typer
+
+from evaluate.commands.options import Json, Out, Seed, application
 from evaluate.inputs import require_writable
 from evaluate.output import print_json, print_line, print_table, progress
 from pcg.agents import agent_named
@@ -18,8 +21,85 @@ from pcg.policy_source import source_of
 from pcg.random_source import RandomSource
 from pcg.request import LevelSource, Request
 
+app = application()
+
 Band = tuple[float | None, float | None]
 """Ends of a band; None for the default's."""
+
+
+def _asked(metavar: str, text: str, default: str, **limits: float) -> Any:
+    """An option of `generate` whose default is that of the agent."""
+    return typer.Option(metavar=metavar, help=text, show_default=default, **cast("Any", limits))
+
+
+@app.command()
+def run(
+    *,
+    out: Out,
+    agent: Annotated[
+        str, typer.Option(metavar="NAME", help="What proposes levels: random, or m0 ... m35 of data/agents.yaml.")
+    ] = "random",
+    count: Annotated[int, typer.Option(metavar="N", min=1, help="Number of levels.")] = 10,
+    seed: Seed = 0,
+    rows: Annotated[int | None, _asked("N", "Inner rows.", "10", min=1, max=100)] = None,
+    columns: Annotated[int | None, _asked("N", "Inner columns.", "10", min=1, max=100)] = None,
+    crates: Annotated[int | None, _asked("N", "Crates of a level.", "2", min=1)] = None,
+    targets: Annotated[int | None, _asked("N", "Targets of a level.", "1", min=1)] = None,
+    min_pushes: Annotated[
+        int | None, _asked("N", "Pushes that the shortest solution needs at least.", "3, or the agent's", min=0)
+    ] = None,
+    max_pushes: Annotated[int | None, _asked("N", "Pushes at most.", "any, or the agent's", min=0)] = None,
+    min_density: Annotated[
+        float | None, _asked("SHARE", "Walls by inner cells at least.", "0.05, or the agent's", min=0, max=1)
+    ] = None,
+    max_density: Annotated[
+        float | None, _asked("SHARE", "Walls by inner cells at most.", "0.3, or the agent's", min=0, max=1)
+    ] = None,
+    occluded: Annotated[
+        bool | None,
+        typer.Option(
+            "--occluded/--visible", help="Whether the player sees the goal crate; by default both.", show_default=False
+        ),
+    ] = None,
+    dependency: Annotated[
+        bool | None,
+        typer.Option(
+            "--dependency/--no-dependency",
+            help="Whether another crate has to move first; by default both.",
+            show_default=False,
+        ),
+    ] = None,
+    frozen: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Tiles to keep: a level in XSB text with ? for open cells.", show_default=False
+        ),
+    ] = None,
+    json: Json = False,
+) -> bool:
+    """Generate solvable levels as a level set: levels.xsb and manifest.jsonl.
+
+    Example:  manipuzzle generate --agent random --count 10 --seed 0 --out out/levels
+    """
+    request = request_of(
+        agent,
+        frozen,
+        rows=rows,
+        columns=columns,
+        crates=crates,
+        targets=targets,
+        pushes=(min_pushes, max_pushes),
+        wall_density=(min_density, max_density),
+        occluded=occluded,
+        dependency=dependency,
+    )
+    require_writable(out)
+    levels = generate(count, seed, request, out, agent)
+    if json:
+        print_json({"agent": agent, "levels": _rows(levels), **_effort(levels), "out": str(out)})
+    else:
+        _print(levels, out)
+    return True
 
 
 def request_of(
@@ -85,22 +165,18 @@ def generate(count: int, seed: int, request: Request, folder: Path, agent: str =
     return levels
 
 
-def run(agent: str, count: int, seed: int, request: Request, out: Path, *, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.generate`."""
-    require_writable(out)
-    levels = generate(count, seed, request, out, agent)
-    entries = [manifest_entry(level) for level in levels]
-    if as_json:
-        names = ("name", "solvable", "pushes", "moves", "occluded", "dependency", "goal_crate")
-        rows = [{name: entry.model_dump()[name] for name in names} for entry in entries]
-        print_json({"agent": agent, "levels": rows, **_effort(levels), "out": str(out)})
-    else:
-        rows_of_table = [(e.name, e.pushes, e.moves, e.statistics.walls, e.occluded, e.dependency) for e in entries]
-        print_table(["level", "pushes", "moves", "walls", "occluded", "dependency"], rows_of_table)
-        effort = _effort(levels)
-        reasons = ", ".join(f"{n} {reason}" for reason, n in effort["rejected"].items()) or "none"
-        print_line(f"{len(levels)} levels written to {out}; attempts: {effort['attempts']}, thrown away: {reasons}")
-    return True
+def _rows(levels: Sequence[GeneratedLevel]) -> list[dict[str, Any]]:
+    names = ("name", "solvable", "pushes", "moves", "occluded", "dependency", "goal_crate")
+    return [{name: entry.model_dump()[name] for name in names} for entry in map(manifest_entry, levels)]
+
+
+def _print(levels: Sequence[GeneratedLevel], out: Path) -> None:
+    entries = map(manifest_entry, levels)
+    rows = [(e.name, e.pushes, e.moves, e.statistics.walls, e.occluded, e.dependency) for e in entries]
+    print_table(["level", "pushes", "moves", "walls", "occluded", "dependency"], rows)
+    effort = _effort(levels)
+    reasons = ", ".join(f"{n} {reason}" for reason, n in effort["rejected"].items()) or "none"
+    print_line(f"{len(levels)} levels written to {out}; attempts: {effort['attempts']}, thrown away: {reasons}")
 
 
 def _effort(levels: Sequence[GeneratedLevel]) -> dict[str, Any]:

@@ -1,21 +1,34 @@
 """`manipuzzle levels`: what is known about levels."""
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from evaluate.commands.options import Json, application
 from evaluate.inputs import read_playable_levels
 from evaluate.output import print_json, print_line, print_table, progress
 from pcg.report import report_levels, summarise
 
+app = application()
 
-def run(files: Sequence[Path], *, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.levels`."""
+
+@app.command()
+def run(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE", help="XSB files or level sets.")],
+    *,
+    json: Json = False,
+) -> bool:
+    """Report on levels: solvable, solution, statistics, duplicates. Exit status 1 if one is not solvable.
+
+    Example:  manipuzzle levels out/levels
+    """
     levels = [level for path in files for level in read_playable_levels(path)]
     with progress() as bar:
         reports = list(bar.track(report_levels(levels), total=len(levels), description="levels"))
     summary = summarise(reports)
-    if as_json:
+    if json:
         print_json({"levels": [asdict(report) for report in reports], "summary": asdict(summary)})
     else:
         columns = ["level", "solvable", "pushes", "moves", "crates", "targets", "walls", "regions", "occluded"]

@@ -3,9 +3,13 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from converter.scene import Scene
 from converter.theme import THEMES
+from evaluate.commands.options import Json, Out, SceneOfPlans, Theme, application
 from evaluate.inputs import read_scene_file, require_choice, require_writable
 from evaluate.names import require_distinct, safe_name
 from evaluate.output import print_json, print_line, print_table, progress
@@ -13,8 +17,57 @@ from evaluate.picture_files import FORMATS, PAGE, STILL, Picture, Style, write_p
 from evaluate.subjects import Subject, as_storyboard, read_subjects
 from pcg.errors import InputError
 
+app = application()
+
 SHEET = "sheet"
 """Stem of the file of a contact sheet."""
+
+
+@app.command()
+def run(
+    inputs: Annotated[
+        list[Path], typer.Argument(metavar="LEVEL|SCENE|PLAN", help="XSB files, level sets, scenes, plans.")
+    ],
+    *,
+    out: Out,
+    format_: Annotated[
+        str, typer.Option("--format", metavar="NAME", help="png or svg; of plans also gif, mp4, or html: a player.")
+    ] = "png",
+    sheet: Annotated[bool, typer.Option("--sheet", help="One contact sheet with names and verdicts.")] = False,
+    storyboard: Annotated[bool, typer.Option("--storyboard", help="The key frames of plans: each grasp.")] = False,
+    theme: Theme = "paper",
+    width: Annotated[
+        int | None, typer.Option(metavar="PIXELS", min=16, help="Width of pictures and frames.", show_default=False)
+    ] = None,
+    speed: Annotated[
+        float, typer.Option(metavar="M/S", min=0.01, max=1000, help="Speed of the agent in animations.")
+    ] = 1.0,
+    scene: SceneOfPlans = None,
+    json: Json = False,
+) -> bool:
+    """Draw levels, scenes and plans to DIR/{name}.{format}, or with --sheet all of them to DIR/sheet.{format}.
+
+    html makes a page that plays plans, those of one scene side by side, without a network.
+
+    Example:  manipuzzle render out/plans/*.json --out out/pictures --format gif
+    """
+    style = Style(theme=theme, width_px=width, speed=speed)
+    request = Request(format_, scene, style, sheet=sheet, storyboard=storyboard)
+    _require_possible(request)
+    given = None if scene is None else read_scene_file(scene)
+    subjects = [subject for path in inputs for subject in _subjects(path, request, given)]
+    pictures = _pictures(subjects, out, request)
+    require_distinct([picture.file.stem for picture in pictures], "inputs")
+    require_writable(out)
+    with progress() as bar:
+        for _ in bar.track(write_pictures(pictures), description="pictures", total=len(pictures)):
+            pass
+    if json:
+        print_json({"pictures": [{"name": picture.file.stem, "file": str(picture.file)} for picture in pictures]})
+    else:
+        print_table(["name", "file"], [(picture.file.stem, str(picture.file)) for picture in pictures])
+        print_line(f"{len(pictures)} {'file' if len(pictures) == 1 else 'files'} written to {out}")
+    return True
 
 
 @dataclass(frozen=True)
@@ -34,25 +87,6 @@ class Request:
     style: Style
     sheet: bool = False
     storyboard: bool = False
-
-
-def run(inputs: Sequence[Path], out: Path, request: Request, *, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.render`."""
-    _require_possible(request)
-    given = None if request.scene is None else read_scene_file(request.scene)
-    subjects = [subject for path in inputs for subject in _subjects(path, request, given)]
-    pictures = _pictures(subjects, out, request)
-    require_distinct([picture.file.stem for picture in pictures], "inputs")
-    require_writable(out)
-    with progress() as bar:
-        for _ in bar.track(write_pictures(pictures), description="pictures", total=len(pictures)):
-            pass
-    if as_json:
-        print_json({"pictures": [{"name": picture.file.stem, "file": str(picture.file)} for picture in pictures]})
-    else:
-        print_table(["name", "file"], [(picture.file.stem, str(picture.file)) for picture in pictures])
-        print_line(f"{len(pictures)} {'file' if len(pictures) == 1 else 'files'} written to {out}")
-    return True
 
 
 def _require_possible(request: Request) -> None:

@@ -2,7 +2,11 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from evaluate.commands.options import Json, application
 from evaluate.inputs import require_choice, require_writable
 from evaluate.output import print_json, print_line, print_table, progress
 from evaluate.plot_style import FORMATS as PLOT_FORMATS
@@ -19,11 +23,40 @@ PAPER = "paper"
 """What stands for the numbers of the paper, which come with the product."""
 
 
-def run(folder: Path, out: Path | None, formats: Sequence[str], published: str | None, *, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.report`."""
-    for name in formats:
+app = application()
+
+
+@app.command()
+def run(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.")],
+    *,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder for the results.", show_default="DIR/report")
+    ] = None,
+    format_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="html, md, tex, csv, svg, pdf, png or parquet; repeat for several.",
+            show_default="all",
+        ),
+    ] = None,
+    published: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="CSV file of published times to stand beside, or `paper`.", show_default=False
+        ),
+    ] = None,
+    json: Json = False,
+) -> bool:
+    """Write the tables and plots of a study, and report.html: all of them on one page, with every scene and its plan.
+
+    Example:  manipuzzle report out/study --published paper
+    """
+    for name in format_ or []:
         require_choice("--format", name, FORMATS)
-    chosen = formats or FORMATS
+    chosen = format_ or FORMATS
     beside = None if published is None else read_times(table_one() if published == PAPER else Path(published))
     out = out or folder / "report"
     with progress() as bar:
@@ -37,7 +70,7 @@ def run(folder: Path, out: Path | None, formats: Sequence[str], published: str |
     if "html" in chosen:
         files.insert(0, out / "report.html")
         write_page(files[0], report, gallery(folder, report.methods))
-    if as_json:
+    if json:
         print_json({"trials": report.trials, "solved": report.solved, "files": [str(file) for file in files]})
     else:
         _print(report.tables[0])

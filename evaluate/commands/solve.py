@@ -3,16 +3,83 @@
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from converter.plan import write_plan
 from converter.scene import Scene
+from evaluate.commands.options import (
+    Demonstrations,
+    Json,
+    Out,
+    Preset,
+    SceneFiles,
+    Seed,
+    SettingsName,
+    Tolerance,
+    application,
+)
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.names import safe_name
 from evaluate.output import log, print_json, print_line, print_table, progress
 from evaluate.setting_values import assignments, changed
 from evaluate.trial import TrialOutcome, require_plannable, run_trial, warm_up
 from planner import Settings, settings_for
+
+app = application()
+
+
+@app.command()
+def run(
+    scenes: SceneFiles,
+    *,
+    out: Out,
+    method: Annotated[
+        str,
+        typer.Option(metavar="NAME", help="Rnd+FPR, Rnd+FP, Rnd+FR, Rnd+R, Btl+FPR, Hum+R, MBTS, MBTS-rrt or Push."),
+    ] = "Rnd+FPR",
+    seed: Seed = 0,
+    time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9, help="For each scene.")] = 60.0,
+    improve: Annotated[
+        float, typer.Option(metavar="SECONDS", min=0, max=1e9, help="Time for improving each plan that is found.")
+    ] = 0.0,
+    settings: SettingsName = "fast",
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="NAME=VALUE", help="One setting of the planner; repeat for more.", show_default=False
+        ),
+    ] = None,
+    demonstrations: Demonstrations = None,
+    preset: Preset = None,
+    tolerance: Tolerance = None,
+    json: Json = False,
+) -> bool:
+    """Plan, verify the plan, and write it to DIR/{scene}-{method}-{seed}.json. Exit status 1 if one is not solved.
+
+    Example:  manipuzzle solve data/puzzles/cube-free.yaml --out out/plans
+    """
+    of_planner = settings_of(
+        settings, set_ or [], demonstrations, method=method, time_limit=time_limit, improve=improve
+    )
+    named = read_scenes(scenes, preset, tolerance)
+    for path, scene in zip(scenes, named, strict=True):
+        require_plannable(scene, of_planner, str(path))
+    require_writable(out)
+    warm_up(of_planner)
+    results: list[SolveResult] = []
+    with progress() as bar:
+        for scene in bar.track(named, description="scenes"):
+            outcome, result = solve_to_file(scene, of_planner, seed, out)
+            results.append(result)
+            for violation in outcome.violations or ():
+                log(f"{scene.name}: {violation.message}")
+    if json:
+        print_json({"results": [asdict(result) for result in results]})
+    else:
+        _print(results)
+    return all(result.verified is True for result in results)
 
 
 @dataclass(frozen=True)
@@ -86,37 +153,11 @@ def settings_of(preset: str, changes: Sequence[str], demonstrations: Path | None
     return changed(settings_for(preset, **options), assignments(changes, "--set"), "--set")
 
 
-def run(
-    paths: Sequence[Path],
-    out: Path,
-    settings: Settings,
-    seed: int,
-    *,
-    preset: str | None,
-    tolerance: float | None,
-    as_json: bool,
-) -> bool:
-    """Runs the command; see `evaluate.cli.solve`."""
-    scenes = read_scenes(paths, preset, tolerance)
-    for path, scene in zip(paths, scenes, strict=True):
-        require_plannable(scene, settings, str(path))
-    require_writable(out)
-    warm_up(settings)
-    results: list[SolveResult] = []
-    with progress() as bar:
-        for scene in bar.track(scenes, description="scenes"):
-            outcome, result = solve_to_file(scene, settings, seed, out)
-            results.append(result)
-            for violation in outcome.violations or ():
-                log(f"{scene.name}: {violation.message}")
-    if as_json:
-        print_json({"results": [asdict(result) for result in results]})
-    else:
-        columns = ["scene", "method", "seed", "status", "time [s]", "verified", "path [m]", "pick-places", "plan"]
-        rows = [
-            (r.scene, r.method, r.seed, r.status, r.time_s, r.verified, r.path_length_m, r.pick_places, r.plan)
-            for r in results
-        ]
-        print_table(columns, rows)
-        print_line(f"{sum(r.verified is True for r in results)} of {len(results)} scenes solved")
-    return all(result.verified is True for result in results)
+def _print(results: Sequence[SolveResult]) -> None:
+    columns = ["scene", "method", "seed", "status", "time [s]", "verified", "path [m]", "pick-places", "plan"]
+    rows = [
+        (r.scene, r.method, r.seed, r.status, r.time_s, r.verified, r.path_length_m, r.pick_places, r.plan)
+        for r in results
+    ]
+    print_table(columns, rows)
+    print_line(f"{sum(r.verified is True for r in results)} of {len(results)} scenes solved")

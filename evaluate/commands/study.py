@@ -3,7 +3,11 @@
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from evaluate.commands.options import Demonstrations, Json, Out, application
 from evaluate.output import log, print_json, print_line, print_table, progress
 from evaluate.specification import read_study
 from evaluate.store import TrialStore
@@ -14,13 +18,34 @@ from evaluate.workers import Execute, WorkerStartError, run_tasks
 from pcg.errors import InputError
 from pcg.files import write_text
 
+app = application()
+
 TABLE_FILE = "table.md"
 
 
+@app.command()
 def run(
-    spec: Path, out: Path, *, workers: int, cluster: str | None, demonstrations: Path | None, as_json: bool
+    spec: Annotated[Path, typer.Argument(metavar="SPEC.yaml", help="Scenes, methods, seeds and limits.")],
+    *,
+    out: Out,
+    workers: Annotated[int, typer.Option(metavar="N", min=1, max=1024, help="Processes that solve.")] = 1,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Dask scheduler whose workers solve instead, or local:N for one of its own.",
+            show_default=False,
+        ),
+    ] = None,
+    demonstrations: Demonstrations = None,
+    json: Json = False,
 ) -> bool:
-    """Runs the command; see `evaluate.cli.study`."""
+    """Solve every scene with every method and seed; DIR/trials.sqlite holds the trials, DIR/table.md the table.
+
+    Trials that DIR holds are not repeated, so an interrupted study is continued by the same command.
+
+    Example:  manipuzzle study data/studies/smoke.yaml --out out/study --workers 2
+    """
     study = read_study(spec, demonstrations)
     execute = _execution(workers, cluster, out)
     for note in study.notes:
@@ -39,7 +64,7 @@ def run(
     write_text(out / TABLE_FILE, study_table(study, summary.cells))
     totals = by_method(summary.cells)
     by_name = {method: totals.get(method, Cell()) for method in (m.name for m in study.methods)}
-    if as_json:
+    if json:
         print_json(_document(summary, by_name))
     else:
         rows = [(m, c.trials, c.solved, c.mean_time, c.time_deviation) for m, c in by_name.items()]

@@ -3,9 +3,12 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from converter.plan import write_plan
+from evaluate.commands.options import Json, application
 from evaluate.inputs import require_writable
 from evaluate.names import safe_name
 from evaluate.output import log, print_json, print_line, print_table
@@ -13,6 +16,8 @@ from evaluate.record import plan_of
 from evaluate.store import StoredTrials, TrialRow
 from pcg.errors import InputError
 from planner.verify import verify
+
+app = application()
 
 
 @dataclass(frozen=True)
@@ -41,21 +46,47 @@ class Choice:
         return fits and row.key.startswith(self.key or "")
 
 
-def run(folder: Path, choice: Choice, out: Path | None, *, verified: bool, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.trials`."""
+@app.command()
+def run(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Results of a study.")],
+    *,
+    trial: Annotated[
+        str | None, typer.Option(metavar="KEY", help="Beginning of a trial's key.", show_default=False)
+    ] = None,
+    scene: Annotated[str | None, typer.Option(metavar="NAME", help="Of this scene only.", show_default=False)] = None,
+    method: Annotated[str | None, typer.Option(metavar="NAME", help="Of this method only.", show_default=False)] = None,
+    seed: Annotated[
+        int | None, typer.Option(metavar="N", min=0, help="With this seed only.", show_default=False)
+    ] = None,
+    status: Annotated[
+        str | None, typer.Option(metavar="NAME", help="That ended so: solved, timeout, ...", show_default=False)
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write the plans into this folder.", show_default=False)
+    ] = None,
+    verify: Annotated[bool, typer.Option("--verify", help="Verify the plans anew.")] = False,
+    json: Json = False,
+) -> bool:
+    """List the trials of a study; with --out write their plans, which verify and render read, scene included.
+
+    Exit status 1 if --verify finds a plan that is not valid.
+
+    Example:  manipuzzle trials out/study --scene corner --seed 0 --out out/plans
+    """
+    choice = Choice(key=trial, scene=scene, method=method, seed=seed, status=status)
     with StoredTrials(folder) as store:
         if out is not None:
             require_writable(out)
-        found = [_reported(row, out, verified=verified) for row in _chosen(store, choice)]
+        found = [_reported(row, out, verified=verify) for row in _chosen(store, choice)]
     if not found:
         raise InputError(str(folder), "holds no such trial")
-    if as_json:
+    if json:
         print_json({"trials": found})
     else:
         columns = ["trial", "scene", "preset", "method", "seed", "status", "time [s]", "verified", "message", "plan"]
         print_table(columns, ([trial[_FIELDS[column]] for column in columns] for trial in found))
         print_line(f"{len(found)} trials, {sum(trial['verified'] is True for trial in found)} solved")
-    return not any(trial["verified"] is False for trial in found) if verified else True
+    return not any(trial["verified"] is False for trial in found) if verify else True
 
 
 _FIELDS = {"time [s]": "time_s"} | {

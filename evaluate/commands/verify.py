@@ -2,26 +2,42 @@
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from converter.plan import read_plan
+from evaluate.commands.options import Json, Preset, SceneFile, Tolerance, application
 from evaluate.inputs import read_scene_file
 from evaluate.output import print_json, print_line, print_table
 from planner.verify import require_same_scene, verify
 
+app = application()
 
-def run(scene_path: Path, plan_path: Path, *, preset: str | None, tolerance: float | None, as_json: bool) -> bool:
-    """Runs the command; see `evaluate.cli.verify`."""
-    scene = read_scene_file(scene_path, preset, tolerance)
-    plan = read_plan(plan_path)
-    require_same_scene(scene, plan, str(plan_path))
-    violations = verify(scene, plan)
-    if as_json:
+
+@app.command()
+def run(
+    scene: SceneFile,
+    plan: Annotated[Path, typer.Argument(metavar="PLAN", help="Plan file (.json).")],
+    *,
+    preset: Preset = None,
+    tolerance: Tolerance = None,
+    json: Json = False,
+) -> bool:
+    """Check a plan independently of the planner and list every violation. Exit status 1 if there is one.
+
+    Example:  manipuzzle verify data/puzzles/cube-free.yaml out/plans/cube-free-Rnd+FPR-0.json
+    """
+    setting, checked = read_scene_file(scene, preset, tolerance), read_plan(plan)
+    require_same_scene(setting, checked, str(plan))
+    violations = verify(setting, checked)
+    if json:
         print_json({"valid": not violations, "violations": [asdict(violation) for violation in violations]})
     elif violations:
         columns = ["violation", "segment", "x [m]", "y [m]", "amount [m]", "message"]
         rows = [(v.kind.value, v.segment, *(v.where or (None, None)), v.amount, v.message) for v in violations]
         print_table(columns, rows)
-        print_line(f"{plan_path}: not valid, {len(violations)} violations")
+        print_line(f"{plan}: not valid, {len(violations)} violations")
     else:
-        print_line(f"{plan_path}: valid")
+        print_line(f"{plan}: valid")
     return not violations

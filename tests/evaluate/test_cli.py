@@ -22,6 +22,7 @@ from converter.formats import write_scene
 from converter.plan import Plan, read_plan, write_plan
 from converter.scene import Scene
 from evaluate.cli import app
+from evaluate.commands import solve as solve_command
 from evaluate.store import FILE_NAME
 from pcg.request import Request
 from planner import METHODS
@@ -334,16 +335,14 @@ def test_bugs_are_not_hidden(run: Run, monkeypatch: pytest.MonkeyPatch):
 
 def test_finished_results_are_kept(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch):
     """An error in the second scene leaves the first one's plan."""
-    from evaluate.commands import solve as command  # noqa: PLC0415 - as the command line does
-
-    solve = command.run_trial
+    solve = solve_command.run_trial
 
     def failing(scene: Scene, *arguments: Any) -> Any:
         if scene.name == "second":
             raise KeyboardInterrupt
         return solve(scene, *arguments)
 
-    monkeypatch.setattr(command, "run_trial", failing)
+    monkeypatch.setattr(solve_command, "run_trial", failing)
     (folder / "second.yaml").write_text((folder / "room.yaml").read_text())
     assert run("solve", "room.yaml", "second.yaml", "--out", "o").exit_code == 130
     assert [path.name for path in (folder / "o").iterdir()] == ["room-Rnd+FPR-0.json"]

@@ -10,7 +10,7 @@ from pcg.errors import InputError
 def test_unknown_representations_are_refused(tmp_path: Path):
     """The message lists what there is, before anything is written."""
     with pytest.raises(InputError, match="found 'broad', allowed are narrow, turtle, wide"):
-        run("broad", 10, 0, 10, 10, tmp_path / "out", as_json=True)
+        run(representation="broad", out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
@@ -18,5 +18,5 @@ def test_unknown_representations_are_refused(tmp_path: Path):
 def test_without_torch_one_line_says_what_to_install(tmp_path: Path):
     """The extra is named, and nothing is written."""
     with pytest.raises(InputError, match=r"torch, stable_baselines3, onnx not installed; .*manipuzzle\[rl\]"):
-        run("narrow", 10, 0, 10, 10, tmp_path / "out", as_json=True)
+        run(representation="narrow", out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
