@@ -6,31 +6,14 @@ from functools import lru_cache
 import numpy as np
 
 from converter.drawing import Drawing, Inset, Item, Shape, box, disc
-from converter.raster import Image, paint, require_paintable
 from converter.theme import PAPER, Color, Theme, mixed
-from pcg.errors import InputError
 from pcg.level import Level, Tile, TileArray
-
-MIN_TILE_PX = 4
 
 GOAL_CRATE = len(Tile)
 GOAL_CRATE_ON_TARGET = len(Tile) + 1
 """Kinds of tiles beyond those of a level's cells."""
 
 _CENTER = np.array([0.5, 0.5])
-
-
-def draw_level(level: Level, tile_px: int = 40, *, theme: Theme = PAPER) -> Image:
-    """The level as an image of (rows + 2) x (columns + 2) tiles of `tile_px` pixels.
-
-    Raises:
-        InputError: a tile would have fewer than `MIN_TILE_PX` pixels, or the image would be too large.
-    """
-    if tile_px < MIN_TILE_PX:
-        raise InputError("tile size", f"{tile_px} pixels; at least {MIN_TILE_PX} are needed")
-    rows, columns = (count + 2 for count in level.shape)
-    require_paintable(columns * tile_px, rows * tile_px)
-    return paint(level_drawing(level, theme=theme), columns * tile_px)
 
 
 def level_drawing(level: Level, *, theme: Theme = PAPER) -> Drawing:

@@ -12,7 +12,6 @@ import numpy as np
 from converter.drawing import Drawing, Item, Label, Line, Rounded, Shape
 from converter.plan import Plan
 from converter.polyline import path_length
-from converter.raster import Image, paint
 from converter.render_scene import agent_shape, body_shape, object_color, scene_drawing
 from converter.replay import Step, points_along, replay
 from converter.scene import Body, Scene
@@ -51,15 +50,6 @@ class Placement:
     body: Body
     position: FloatArray
     numbers: tuple[int, ...]
-
-
-def draw_plan(scene: Scene, plan: Plan, width_px: int = 600, *, theme: Theme = PAPER) -> Image:
-    """The plan as an image; a plan without segments gives the picture of the scene.
-
-    Raises:
-        InputError: the plan carries an object that the scene does not have, or the image would be too large.
-    """
-    return paint(plan_drawing(scene, plan, theme=theme), width_px)
 
 
 def plan_drawing(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Drawing:

@@ -3,38 +3,18 @@
 import numpy as np
 
 from converter.drawing import Drawing, Item, Rounded, Shape, box, disc, extent, footprint
-from converter.raster import Image, paint
 from converter.scene import Body, Scene
 from converter.shape import FloatArray
 from converter.theme import PAPER, Color, Theme
 
-SUBGOAL_RADIUS = 3.0
-"""Radius of the dot of a subgoal, in units of the picture."""
 
-
-def draw_scene(scene: Scene, width_px: int = 600, *, subgoals: FloatArray | None = None, theme: Theme = PAPER) -> Image:
-    """The scene as an image.
-
-    Args:
-        scene: The scene.
-        width_px: Width of the image.
-        subgoals: (n, 2) [m], world: positions that are marked with dots.
-        theme: Colours and line widths.
-
-    Raises:
-        InputError: the image would be too large.
-    """
-    return paint(scene_drawing(scene, subgoals=subgoals, theme=theme), width_px)
-
-
-def scene_drawing(scene: Scene, *, subgoals: FloatArray | None = None, theme: Theme = PAPER) -> Drawing:
-    """The scene at its start; `subgoals` (n, 2) [m] are marked with dots."""
+def scene_drawing(scene: Scene, *, theme: Theme = PAPER) -> Drawing:
+    """The scene at its start."""
     empty = room_drawing(scene, theme)
     unit = empty.unit
     movable = [body_shape(body, object_color(scene, body, theme), unit, theme) for body in scene.objects]
     agent = agent_shape(scene, scene.agent.position, unit, theme)
-    dots = [_subgoal_dot(scene, position, unit, theme) for position in (() if subgoals is None else subgoals)]
-    return Drawing(empty.lower, empty.upper, empty.background, (*empty.items, *movable, agent, *dots))
+    return Drawing(empty.lower, empty.upper, empty.background, (*empty.items, *movable, agent))
 
 
 def room_drawing(scene: Scene, theme: Theme) -> Drawing:
@@ -79,11 +59,6 @@ def object_color(scene: Scene, body: Body, theme: Theme) -> Color:
 
 def _outlined(parts: tuple[Rounded, ...], color: Color, unit: float, theme: Theme) -> Shape:
     return Shape(parts, color, outline=theme.outline, outline_width=theme.outline_width * unit)
-
-
-def _subgoal_dot(scene: Scene, position: FloatArray, unit: float, theme: Theme) -> Shape:
-    color = object_color(scene, scene.goal_object, theme)
-    return Shape((disc(position, SUBGOAL_RADIUS * unit),), color, outline=theme.badge, outline_width=unit)
 
 
 def _room(scene: Scene) -> tuple[FloatArray, FloatArray]:

@@ -4,7 +4,6 @@ import numpy as np
 import numpy.typing as npt
 
 from converter.drawing import Drawing, Inset, Item, Label, Shape, disc
-from converter.raster import Image, paint
 from converter.render_scene import scene_drawing
 from converter.scene import Scene
 from converter.shape import FloatArray
@@ -16,24 +15,6 @@ DRAWN_RADIUS = 8.0
 
 MARGIN = 34.0
 """Height of the lines above and below the room, in units of the picture."""
-
-
-def draw_subgoals(
-    scene: Scene,
-    candidates: FloatArray,
-    scores: FloatArray,
-    passed: npt.NDArray[np.int64],
-    drawn: npt.NDArray[np.int64],
-    *,
-    width_px: int = 1200,
-    theme: Theme = PAPER,
-) -> Image:
-    """The picture of `subgoals_drawing` as an image of `width_px` pixels' width.
-
-    Raises:
-        InputError: the image would be too large.
-    """
-    return paint(subgoals_drawing(scene, candidates, scores, passed, drawn, theme=theme), width_px)
 
 
 def subgoals_drawing(

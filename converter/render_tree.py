@@ -12,7 +12,6 @@ from enum import Enum
 import numpy as np
 
 from converter.drawing import Drawing, Inset, Item, Label, Line, Shape, box, disc, fitted
-from converter.raster import Image, paint
 from converter.render_scene import scene_drawing
 from converter.scene import Scene
 from converter.shape import FloatArray
@@ -64,12 +63,6 @@ class TreeNode:
     agent: FloatArray
     objects: FloatArray
     mark: Mark
-
-
-def draw_tree(scene: Scene, nodes: Sequence[TreeNode], *, theme: Theme = PAPER) -> Image:
-    """The tree as an image; see `tree_drawing`."""
-    drawing = tree_drawing(scene, nodes, theme=theme)
-    return paint(drawing, tree_width_px(drawing))
 
 
 def tree_width_px(drawing: Drawing) -> int:

@@ -10,13 +10,12 @@ import numpy as np
 
 from converter.drawing import Drawing, Item, Line, Shape, disc
 from converter.plan import Plan
-from converter.raster import Image, paint
 from converter.render_plan import CASING, GHOST_SHADE
 from converter.render_scene import agent_shape, body_shape, object_color, room_drawing
 from converter.replay import Step, replay
 from converter.scene import Scene
 from converter.shape import FloatArray
-from converter.sheet import Card, sheet_drawing, sheet_width_px
+from converter.sheet import Card, sheet_drawing
 from converter.theme import PAPER, Theme, mixed
 from pcg.errors import InputError
 
@@ -28,16 +27,6 @@ ONE_ROW = 5
 """Frames that stand in one row."""
 
 MAX_FRAMES = 200
-
-
-def draw_storyboard(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Image:
-    """The picture of `storyboard_drawing` as an image.
-
-    Raises:
-        InputError: as there.
-    """
-    drawing = storyboard_drawing(scene, plan, theme=theme)
-    return paint(drawing, sheet_width_px(drawing))
 
 
 def storyboard_drawing(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Drawing:

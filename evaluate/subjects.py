@@ -7,19 +7,19 @@ from pathlib import Path
 from typing import Literal, NamedTuple, Protocol
 
 from converter.drawing import Drawing
-from converter.plan import Plan, read_plan
+from converter.plan import Plan
 from converter.render_level import level_drawing
 from converter.render_plan import plan_drawing
 from converter.render_scene import scene_drawing
 from converter.scene import Scene
 from converter.storyboard import storyboard_drawing
 from converter.theme import Theme
-from evaluate.inputs import is_plan, is_scene, read_playable_levels, read_scene_file
+from evaluate.inputs import is_plan, is_scene, read_plan_with_scene, read_playable_levels, read_scene_file
 from evaluate.names import safe_name
 from pcg.errors import InputError
 from pcg.level import Level
 from pcg.solver import SolverStatus, solve
-from planner.verify import require_same_scene, verify
+from planner.verify import verify
 
 TILE_PX = 40
 """Side of a level's tile."""
@@ -81,8 +81,8 @@ def read_subjects(path: Path, given: Scene | None) -> list[Subject]:
         InputError: naming the file, the place in it, and the reason.
     """
     if is_plan(path):
-        plan = read_plan(path)
-        return [plan_subject(path.stem, _scene_of(path, plan, given), plan)]
+        plan, scene = read_plan_with_scene(path, given)
+        return [plan_subject(path.stem, scene, plan)]
     if is_scene(path):
         return [scene_subject(read_scene_file(path))]
     return [level_subject(level) for level in read_playable_levels(path)]
@@ -117,15 +117,6 @@ def as_storyboard(subject: Subject) -> Subject:
         raise InputError(subject.name, f"a {subject.kind} has no motion; --storyboard shows plans")
     draw = partial(storyboard_drawing, *subject.motion)
     return Subject(subject.kind, f"{subject.name}-storyboard", draw, subject.judge, None, subject.motion)
-
-
-def _scene_of(path: Path, plan: Plan, given: Scene | None) -> Scene:
-    if given is not None:
-        require_same_scene(given, plan, str(path))
-        return given
-    if plan.scene_data is None:
-        raise InputError(str(path), "the file holds no scene; name the scene's file by --scene")
-    return plan.scene_data
 
 
 def _judge_level(level: Level) -> Verdict:

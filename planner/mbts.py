@@ -46,18 +46,9 @@ def solve(
     should_stop: Callable[[], bool] = lambda: False,
     on_progress: Callable[[Progress], object] = lambda _: None,
 ) -> PlanResult:
-    """Searches for a skeleton whose path bound is feasible.
+    """Searches for a skeleton whose path bound is feasible, as `planner.methods.solve` says.
 
-    Args:
-        scene: The puzzle.
-        settings: Method (`MBTS` or `MBTS-rrt`) and budgets.
-        rng: Source of all randomness.
-        should_stop: Asked between optimisations; True ends the search with status `timeout`.
-        on_progress: Told after every step that did not end the search; `best_score` counts the bounds passed by the
-            node that has come furthest.
-
-    Raises:
-        InputError: bodies of the scene overlap at the start.
+    `best_score` of the progress counts the bounds passed by the node that has come furthest.
     """
     return MultiBoundTreeSearch(Problem(scene), settings, rng, should_stop, on_progress).run()
 

@@ -118,14 +118,7 @@ def solve(
     should_stop: Callable[[], bool] = lambda: False,
     on_progress: Callable[[Progress], object] = lambda _: None,
 ) -> PlanResult:
-    """Lifts the solution with the fewest pushes that brings the goal crate to the goal.
-
-    Args:
-        scene: The puzzle.
-        settings: Budgets.
-        rng: Source of all randomness, which only carries in other grasps than the straight one use.
-        should_stop: Asked between carries; True ends with status `timeout`.
-        on_progress: Told after every carry.
+    """Lifts the solution with the fewest pushes that brings the goal crate to the goal, as `planner.methods.solve` says.
 
     Raises:
         InputError: bodies of the scene overlap at the start, or its source level is missing or another one.

@@ -7,8 +7,8 @@ import pytest
 
 from converter.animate_plan import FIRST_REST_S, LAST_REST_S, REST_S, plan_frames
 from converter.plan import Plan, Segment
-from converter.raster import Image
-from converter.render_scene import draw_scene, room_drawing
+from converter.raster import Image, paint
+from converter.render_scene import room_drawing, scene_drawing
 from converter.scene import Scene
 from converter.shape import FloatArray
 from converter.theme import PAPER, Color
@@ -33,10 +33,10 @@ def frames_of(scene: Scene, plan: Plan, segment: Segment, **options: Any) -> lis
 def test_frames_begin_and_end_at_rest(small_room: Scene, small_plan: Plan):
     """The first frame is the picture of the scene; the last has the goal-object in the goal and the agent back."""
     frames = list(plan_frames(small_room, small_plan, width_px=240))
-    assert np.array_equal(frames[0], draw_scene(small_room, 240))
+    assert np.array_equal(frames[0], paint(scene_drawing(small_room), 240))
     at_goal = np.array([-1.0, 1.5, 0.1])
     moved = replace(small_room, objects=(replace(small_room.objects[0], position=at_goal), small_room.objects[1]))
-    assert np.array_equal(frames[-1], draw_scene(moved, 240))
+    assert np.array_equal(frames[-1], paint(scene_drawing(moved), 240))
 
 
 def test_number_of_frames_follows_from_length_speed_and_rests(small_room: Scene, small_plan: Plan):
@@ -80,7 +80,7 @@ def test_plan_without_motion_is_the_scene_at_rest(small_room: Scene, small_plan:
     """A failed attempt gives frames that all show the start."""
     frames = list(plan_frames(small_room, replace(small_plan, segments=()), width_px=100))
     assert len(frames) == round(20 * (FIRST_REST_S + LAST_REST_S))
-    assert all(np.array_equal(frame, draw_scene(small_room, 100)) for frame in frames)
+    assert all(np.array_equal(frame, paint(scene_drawing(small_room), 100)) for frame in frames)
 
 
 def test_segment_without_length_is_shown(small_room: Scene, small_plan: Plan):

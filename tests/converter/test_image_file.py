@@ -9,8 +9,8 @@ import pytest
 from converter.animate_plan import plan_frames
 from converter.image_file import write_gif, write_png
 from converter.plan import Plan
-from converter.raster import Image
-from converter.render_scene import draw_scene
+from converter.raster import Image, paint
+from converter.render_scene import scene_drawing
 from converter.scene import Scene
 from pcg.errors import InputError
 
@@ -36,7 +36,7 @@ def gif_frames(path: Path) -> tuple[list[Image], list[int]]:
 
 def test_png_keeps_every_pixel(tmp_path: Path, small_room: Scene):
     """What is read back is what was written, red as red."""
-    image = draw_scene(small_room, 200)
+    image = paint(scene_drawing(small_room), 200)
     write_png(tmp_path / "scene.png", image)
     assert np.array_equal(cv2.imread(str(tmp_path / "scene.png"))[..., ::-1], image)
 
@@ -44,7 +44,7 @@ def test_png_keeps_every_pixel(tmp_path: Path, small_room: Scene):
 def test_png_bytes_are_the_same_each_time(tmp_path: Path, small_room: Scene):
     """The same scene gives the same file, byte for byte."""
     for name in ("a.png", "b.png"):
-        write_png(tmp_path / name, draw_scene(small_room, 200))
+        write_png(tmp_path / name, paint(scene_drawing(small_room), 200))
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 

@@ -5,9 +5,9 @@ import pytest
 
 from converter.drawing import Drawing, Label, Line
 from converter.plan import Plan, Segment
-from converter.raster import Image
-from converter.render_plan import Placement, draw_plan, placements, plan_drawing
-from converter.render_scene import draw_scene
+from converter.raster import Image, paint
+from converter.render_plan import Placement, placements, plan_drawing
+from converter.render_scene import scene_drawing
 from converter.replay import replay
 from converter.scene import Scene
 from converter.theme import PAPER, Color
@@ -37,7 +37,8 @@ def labels(drawing: Drawing) -> list[str]:
 
 def test_paths_have_the_colours_of_their_modes(small_room: Scene, small_plan: Plan):
     """A quarter along a carry the path is blue, along a drive grey."""
-    drawing, image = plan_drawing(small_room, small_plan), draw_plan(small_room, small_plan, 1200)
+    drawing = plan_drawing(small_room, small_plan)
+    image = paint(drawing, 1200)
     assert pixel_at(drawing, image, -1.05, -0.2) == levels(PAPER.goal_object)
     assert pixel_at(drawing, image, -0.25, -1.0) == levels(PAPER.move)
 
@@ -62,7 +63,8 @@ def test_placements_are_numbered_in_order(small_room: Scene, small_plan: Plan):
 
 def test_placements_are_translucent(small_room: Scene, small_plan: Plan):
     """Where an object is put down, its colour shows on the floor, between that of the floor and its own."""
-    drawing, image = plan_drawing(small_room, small_plan), draw_plan(small_room, small_plan, 1200)
+    drawing = plan_drawing(small_room, small_plan)
+    image = paint(drawing, 1200)
     ghost = np.array(pixel_at(drawing, image, -1.36, 0.64))
     floor, own = np.array(levels(PAPER.floor)), np.array(levels(PAPER.goal_object))
     assert np.allclose(ghost, floor + PAPER.ghost_opacity * (own - floor), atol=2)
@@ -70,7 +72,8 @@ def test_placements_are_translucent(small_room: Scene, small_plan: Plan):
 
 def test_start_stays_solid(small_room: Scene, small_plan: Plan):
     """Objects and agent at the start look as in the picture of the scene."""
-    drawing, image = plan_drawing(small_room, small_plan), draw_plan(small_room, small_plan)
+    drawing = plan_drawing(small_room, small_plan)
+    image = paint(drawing, 600)
     assert pixel_at(drawing, image, -0.85, 0.1) == levels(PAPER.goal_object)
     assert pixel_at(drawing, image, 0.05, -1.1) == levels(PAPER.agent)
 
@@ -103,20 +106,22 @@ def test_objects_placed_at_one_place_keep_their_own_labels(small_room: Scene, sm
 
 def test_plan_without_motion_shows_the_scene(small_room: Scene, small_plan: Plan):
     """A planning attempt that failed gives the picture of the scene."""
-    assert np.array_equal(draw_plan(small_room, replace(small_plan, segments=())), draw_scene(small_room))
+    assert np.array_equal(
+        paint(plan_drawing(small_room, replace(small_plan, segments=())), 600), paint(scene_drawing(small_room), 600)
+    )
 
 
 def test_plan_for_another_scene_is_refused(small_room: Scene, small_plan: Plan):
     """A segment with an unknown object is an error that names it."""
     foreign = replace(small_plan, segments=(Segment("carry", "crate", np.zeros((1, 2))),))
     with pytest.raises(InputError, match="no object 'crate'"):
-        draw_plan(small_room, foreign)
+        plan_drawing(small_room, foreign)
 
 
 def test_arrows_point_ahead(small_room: Scene, small_plan: Plan):
     """The wide end of the arrow head on a drive to the right is left of its tip."""
     drive = replace(small_plan, segments=(Segment("move", None, np.array([[-1.5, -1.5], [1.5, -1.5]])),))
-    image = draw_plan(small_room, drive, 1200)
+    image = paint(plan_drawing(small_room, drive), 1200)
     grey = (np.abs(image.astype(int) - levels(PAPER.move)) <= 2).all(axis=-1)
     thickness = grey[1000:].sum(axis=0)
     (wide,) = np.flatnonzero(thickness == thickness.max())[:1]
@@ -129,4 +134,6 @@ def test_arrows_point_ahead(small_room: Scene, small_plan: Plan):
 def test_paths_far_outside_are_cut(small_room: Scene, small_plan: Plan):
     """A path to the largest coordinates that a plan file may have leaves the picture, which stays as it was."""
     away = replace(small_plan, segments=(Segment("move", None, np.array([[0.0, 2.05], [1e4, 1e4], [-1e4, 1e4]])),))
-    assert (draw_plan(small_room, away) != draw_scene(small_room)).any(axis=-1).sum() < 200
+    assert (paint(plan_drawing(small_room, away), 600) != paint(scene_drawing(small_room), 600)).any(
+        axis=-1
+    ).sum() < 200

@@ -1,13 +1,11 @@
 """Pictures of subgoals."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from converter.raster import Image
+from converter.raster import Image, paint
 from converter.render_scene import scene_drawing
-from converter.render_subgoals import MARGIN, draw_subgoals, score_color
+from converter.render_subgoals import MARGIN, score_color, subgoals_drawing
 from converter.scene import Scene
 from converter.theme import PAPER, mixed
 
@@ -28,7 +26,7 @@ def pixel(image: Image, scene: Scene, position: np.ndarray, panel: int) -> list[
 
 def test_dots_have_the_colours_of_their_scores_before_and_after(small_room: Scene):
     """On the left all candidates, on the right those that passed; what did not pass shows the floor there."""
-    image = draw_subgoals(small_room, CANDIDATES, SCORES, np.array([1, 2]), np.array([2]))
+    image = paint(subgoals_drawing(small_room, CANDIDATES, SCORES, np.array([1, 2]), np.array([2])), 1200)
     floor = [round(255 * channel) for channel in PAPER.floor]
     for i, (position, score) in enumerate(zip(CANDIDATES, SCORES, strict=True)):
         color = [round(255 * channel) for channel in score_color(score, SCORES)]
@@ -40,7 +38,7 @@ def test_drawn_subgoals_are_ringed(small_room: Scene):
     """The ring's pale ground shows beside the dot of a drawn candidate, and beside no other one."""
     passed = np.array([1, 2])
     beside = np.array([6.9 * scene_drawing(small_room).unit, 0.0])
-    image = draw_subgoals(small_room, CANDIDATES, SCORES, passed, np.array([2]))
+    image = paint(subgoals_drawing(small_room, CANDIDATES, SCORES, passed, np.array([2])), 1200)
     ringed, plain = (pixel(image, small_room, CANDIDATES[i] + beside, 1) for i in (2, 1))
     assert ringed == [255, 255, 255]
     assert plain == [round(255 * channel) for channel in PAPER.floor]
@@ -56,13 +54,7 @@ def test_colours_grow_darker_with_the_score():
 
 def test_nothing_to_show_is_a_picture_of_the_scene(small_room: Scene):
     """An object that can go nowhere has no dots; headings and size stay."""
-    with_dots = draw_subgoals(small_room, CANDIDATES, SCORES, np.array([1]), NONE)
-    without = draw_subgoals(small_room, np.empty((0, 2)), np.empty(0), NONE, NONE)
+    with_dots = paint(subgoals_drawing(small_room, CANDIDATES, SCORES, np.array([1]), NONE), 1200)
+    without = paint(subgoals_drawing(small_room, np.empty((0, 2)), np.empty(0), NONE, NONE), 1200)
     assert with_dots.shape == without.shape
     assert without.std() > 0
-
-
-def test_the_width_is_as_asked(small_room: Scene):
-    """Two panels of half the width each."""
-    half = replace(small_room, name="x")
-    assert draw_subgoals(half, CANDIDATES, SCORES, NONE, NONE, width_px=400).shape[1] == 400

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converter.render_tree import MAX_EXPANDED, Mark, TreeNode, draw_tree, layout
+from converter.raster import Image, paint
+from converter.render_tree import MAX_EXPANDED, Mark, TreeNode, layout, tree_drawing, tree_width_px
 from converter.scene import Scene
 
 GREEN, RED = [41, 158, 69], [209, 51, 46]
@@ -23,7 +24,13 @@ def tree(scene: Scene, *nodes: tuple[int | None, Mark]) -> list[TreeNode]:
     return [node(scene, parent, mark) for parent, mark in nodes]
 
 
-def colors(image: np.ndarray) -> list[list[int]]:
+def image_of(scene: Scene, nodes: list[TreeNode]) -> Image:
+    """The picture of a tree."""
+    drawing = tree_drawing(scene, nodes)
+    return paint(drawing, tree_width_px(drawing))
+
+
+def colors(image: Image) -> list[list[int]]:
     """All colours of an image."""
     return np.unique(image.reshape(-1, 3), axis=0).tolist()
 
@@ -52,12 +59,12 @@ def test_a_parent_stands_above_the_middle_of_its_children():
 
 def test_frames_tell_solved_from_unsolved(small_room: Scene):
     """Green where the puzzle was solved, red where it was not; without a solution no green."""
-    solved = draw_tree(
+    solved = image_of(
         small_room, tree(small_room, (None, Mark.UNSOLVED), (0, Mark.OPEN), (0, Mark.SOLVED), (2, Mark.SOLVED))
     )
     assert GREEN in colors(solved)
     assert RED in colors(solved)
-    failed = draw_tree(small_room, tree(small_room, (None, Mark.UNSOLVED), (0, Mark.OPEN)))
+    failed = image_of(small_room, tree(small_room, (None, Mark.UNSOLVED), (0, Mark.OPEN)))
     assert GREEN not in colors(failed)
     assert RED in colors(failed)
 
@@ -65,7 +72,7 @@ def test_frames_tell_solved_from_unsolved(small_room: Scene):
 def test_a_frame_around_each_expanded_configuration(small_room: Scene):
     """The part of the picture that is red grows by the same amount with every unsolved configuration."""
     marks = [(None, Mark.UNSOLVED), (0, Mark.UNSOLVED), (0, Mark.UNSOLVED), (0, Mark.UNSOLVED)]
-    pictures = [draw_tree(small_room, tree(small_room, *marks[:n])) for n in (3, 4)]
+    pictures = [image_of(small_room, tree(small_room, *marks[:n])) for n in (3, 4)]
     red = [(picture == RED).all(axis=2).sum() for picture in pictures]
     assert red[1] / red[0] == pytest.approx(4 / 3, rel=0.1)
 
@@ -73,7 +80,7 @@ def test_a_frame_around_each_expanded_configuration(small_room: Scene):
 def test_large_trees_show_a_part(small_room: Scene):
     """A tree of hundreds of expanded nodes stays a picture of bounded size, and the way to the solution is in it."""
     wide = [(None, Mark.UNSOLVED), *((0, Mark.UNSOLVED) for _ in range(10 * MAX_EXPANDED))]
-    image = draw_tree(small_room, tree(small_room, *wide, (len(wide) - 1, Mark.SOLVED), (len(wide), Mark.SOLVED)))
+    image = image_of(small_room, tree(small_room, *wide, (len(wide) - 1, Mark.SOLVED), (len(wide), Mark.SOLVED)))
     assert image.shape[1] <= 4000
     assert GREEN in colors(image)
 
@@ -81,4 +88,4 @@ def test_large_trees_show_a_part(small_room: Scene):
 def test_a_tree_needs_a_root(small_room: Scene):
     """Without nodes there is nothing to draw."""
     with pytest.raises(ValueError, match="at least one node"):
-        draw_tree(small_room, [])
+        tree_drawing(small_room, [])

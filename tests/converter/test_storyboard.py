@@ -7,8 +7,9 @@ import pytest
 
 from converter.drawing import Drawing, Inset, Label, Line, Shape
 from converter.plan import Plan, Segment
+from converter.raster import paint
 from converter.scene import Scene
-from converter.storyboard import draw_storyboard, storyboard_drawing
+from converter.storyboard import storyboard_drawing
 from converter.theme import PAPER
 from pcg.errors import InputError
 
@@ -60,6 +61,6 @@ def test_what_cannot_be_shown_is_refused(small_room: Scene, small_plan: Plan, co
 
 
 def test_a_storyboard_is_the_same_each_time(small_room: Scene, small_plan: Plan):
-    """As an image too."""
-    first, second = (draw_storyboard(small_room, small_plan) for _ in range(2))
+    """As an image."""
+    first, second = (paint(storyboard_drawing(small_room, small_plan), 400) for _ in range(2))
     assert np.array_equal(first, second)

@@ -21,7 +21,10 @@ CORNERS = vectors([-1, -1], [1, -1], [1, 1], [-1, 1])
 RADIUS = 0.2
 CLEARANCE = 5e-3
 BARRIER = vectors([-0.1, -2], [0.1, -2], [0.1, 1.5], [-0.1, 1.5])
+CLOSED = vectors([-0.1, -2], [0.1, -2], [0.1, 2], [-0.1, 2])
 LEFT, RIGHT = vectors([-1, -1], [1, -1])
+ONE_EACH = pytest.mark.parametrize("name", ["ompl", "rrt", "visibility"])
+SAMPLING = pytest.mark.parametrize("name", ["ompl", "rrt"])
 
 
 def space_with(*cores: FloatArray, rho: float = RADIUS) -> ConfigurationSpace:
@@ -63,12 +66,18 @@ def test_every_back_end_finds_a_way(name: str):
 def test_no_back_end_finds_a_way_where_there_is_none(name: str):
     """A wall from border to border, and ends that are not free; the iterations are bounded."""
     plan, rng = motion_planner(name), np.random.default_rng(0)
-    closed = space_with(vectors([-0.1, -2], [0.1, -2], [0.1, 2], [-0.1, 2]))
-    result = plan(closed, LEFT, RIGHT[None], 300, rng)
+    space = space_with(CLOSED)
+    result = plan(space, LEFT, RIGHT[None], 300, rng)
     assert result.path is None
     assert result.iterations <= 300
-    for start, goals in [(np.zeros(2), RIGHT[None]), (LEFT, np.zeros((1, 2))), (LEFT, np.empty((0, 2)))]:
-        refused = plan(closed, start, goals, 300, rng)
+    blocked, outside = vectors([0, 0], [-2.1, 0])
+    for start, goals in [
+        (blocked, RIGHT[None]),
+        (outside, RIGHT[None]),
+        (LEFT, np.array([blocked, outside])),
+        (LEFT, np.empty((0, 2))),
+    ]:
+        refused = plan(space, start, goals, 300, rng)
         assert (refused.path, refused.iterations) == (None, 0)
 
 
@@ -81,6 +90,51 @@ def test_the_seed_decides(name: str):
     assert (first.path is None) == (again.path is None)
     if first.path is not None:
         np.testing.assert_array_equal(first.path, again.path)
+
+
+@SAMPLING
+@pytest.mark.parametrize("seed", range(5))
+def test_sampled_paths_are_free_and_join_the_ends(name: str, seed: int):
+    """The path begins and ends exactly where asked, the exact test of its pieces confirms it; other seeds, other paths."""
+    space = space_with(BARRIER, rho=0.1)
+    result, other = (
+        motion_planner(name)(space, LEFT, RIGHT[None], 5000, np.random.default_rng(s)) for s in (seed, seed + 1)
+    )
+    assert result.path is not None
+    assert other.path is not None
+    np.testing.assert_array_equal(result.path[[0, -1]], [LEFT, RIGHT])
+    assert space.path_free(result.path)
+    assert 0 < result.iterations <= 5000
+    assert result.path.shape != other.path.shape or (result.path != other.path).any()
+
+
+@SAMPLING
+@pytest.mark.parametrize("iterations", [0, 1, 50, 600])
+def test_iterations_are_bounded(name: str, iterations: int):
+    """Where there is no way, the query ends after exactly as many iterations as allowed."""
+    result = motion_planner(name)(space_with(CLOSED), LEFT, RIGHT[None], iterations, np.random.default_rng(0))
+    assert (result.path, result.iterations) == (None, iterations)
+
+
+@ONE_EACH
+def test_one_of_several_goals(name: str):
+    """The path ends at one of the goals; those that are not free are left out."""
+    space = space_with(BARRIER, rho=0.1)
+    goals = vectors([0, 0], [3, 0], [1, 1], [1.5, -1.5])
+    for seed in range(5):
+        path = motion_planner(name)(space, LEFT, goals, 5000, np.random.default_rng(seed)).path
+        assert path is not None
+        assert space.path_free(path)
+        assert (path[-1] == goals[2:]).all(axis=1).any()
+
+
+@ONE_EACH
+@pytest.mark.parametrize("ends", [[LEFT, LEFT], BOUNDS], ids=["to itself", "on the bounds"])
+def test_ends_may_agree_or_lie_on_the_border(name: str, ends: FloatArray):
+    """Start and goal may be one place, and the border belongs to the space."""
+    path = motion_planner(name)(space_with(), ends[0], np.array(ends[1:]), 100, np.random.default_rng(0)).path
+    assert path is not None
+    np.testing.assert_array_equal(path[[0, -1]], ends)
 
 
 @pytest.mark.parametrize("name", ["ompl:RRTstar", "ompl:InformedRRTstar", "ompl:AORRTC"])

@@ -1,4 +1,4 @@
-"""Compiled RRT-Connect: equal to a plain twin, free, repeatable, bounded, at home in narrow corridors."""
+"""Compiled RRT-Connect: equal to a plain twin, bounded, at home in narrow corridors; the rest is in `test_motion`."""
 
 from itertools import count
 
@@ -87,41 +87,6 @@ def test_agrees_with_the_plain_twin(seed: int):
         np.testing.assert_array_equal(result.path, path)
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_paths_are_free_and_join_the_ends(seed: int):
-    """The path begins and ends exactly where asked, and the exact test of its pieces confirms it."""
-    space = space_with(BARRIER)
-    result = query(space, seed=seed)
-    assert result.path is not None
-    np.testing.assert_array_equal(result.path[[0, -1]], [LEFT, RIGHT])
-    assert space.path_free(result.path)
-    assert 0 < result.iterations <= 5000
-
-
-def test_same_seed_gives_the_same_path():
-    """The generator decides, whatever ran before."""
-    space = space_with(BARRIER)
-    first, other = query(space, seed=7), query(space, seed=8)
-    query(space_with(CLOSED), iterations=50)
-    again = query(space, seed=7)
-    assert first.path is not None
-    assert other.path is not None
-    np.testing.assert_array_equal(first.path, again.path)
-    assert first.iterations == again.iterations
-    assert first.path.shape != other.path.shape or (first.path != other.path).any()
-
-
-def test_one_of_several_goals():
-    """The path ends at one of the goals; those that are not free are left out."""
-    space = space_with(BARRIER)
-    goals = vectors([0, 0], [3, 0], [1, 1], [1.5, -1.5])
-    for seed in range(10):
-        path = query(space, *goals, seed=seed).path
-        assert path is not None
-        assert space.path_free(path)
-        assert (path[-1] == goals[2:]).all(axis=1).any()
-
-
 def test_more_goals_than_a_tree_begins_with():
     """There is room for any number of goals."""
     space = space_with(CLOSED)
@@ -129,20 +94,6 @@ def test_more_goals_than_a_tree_begins_with():
     result = rrt_connect(space, LEFT, goals, 3 * BATCH, np.random.default_rng(0))
     assert (result.path, result.iterations) == (None, 3 * BATCH)
     assert query(space_with(BARRIER), *goals).path is not None
-
-
-@pytest.mark.parametrize("goals", [[[0, 0]], [[0, 0], [2.1, 0]], np.empty((0, 2))])
-def test_without_a_free_goal_there_is_no_search(goals: list[list[float]]):
-    """Goals in collision or out of bounds give no path and take no iterations."""
-    result = rrt_connect(space_with(BARRIER), LEFT, np.array(goals, dtype=float), 100, np.random.default_rng(0))
-    assert (result.path, result.iterations) == (None, 0)
-
-
-@pytest.mark.parametrize("start", [[0.0, 0.0], [-2.1, 0.0]])
-def test_a_start_that_is_not_free_has_no_path(start: list[float]):
-    """The same for the start."""
-    result = rrt_connect(space_with(BARRIER), np.array(start), RIGHT[None], 100, np.random.default_rng(0))
-    assert (result.path, result.iterations) == (None, 0)
 
 
 @pytest.mark.parametrize("iterations", [0, 1, BATCH, BATCH + 1, 10 * BATCH])
@@ -159,13 +110,6 @@ def test_the_query_can_be_stopped():
         space_with(CLOSED), LEFT, RIGHT[None], 10**9, np.random.default_rng(0), lambda: next(asked) == 4
     )
     assert (result.path, result.iterations) == (None, 3 * BATCH)
-
-
-def test_a_query_from_the_goal_to_itself():
-    """Start and goal may agree, though the path between them need not stay there."""
-    path = query(space_with(), LEFT).path
-    assert path is not None
-    np.testing.assert_array_equal(path[[0, -1]], [LEFT, LEFT])
 
 
 def test_narrow_corridors():
