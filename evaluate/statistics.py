@@ -63,12 +63,6 @@ def wilson_interval(successes: int, trials: int, z: float = NORMAL_95) -> tuple[
     return max(0.0, centre - half), min(1.0, centre + half)
 
 
-def success_rate(times: FloatArray) -> float:
-    """Share of the runs that are solved."""
-    ran = ~np.isnan(times)
-    return float(np.isfinite(times).sum() / ran.sum()) if ran.any() else math.nan
-
-
 def mean_time(times: FloatArray) -> float:
     """Mean time of the solved runs [s]."""
     solved = times[np.isfinite(times)]

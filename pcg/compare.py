@@ -75,16 +75,6 @@ class Measurement:
         """Distinct levels by CPU time [1/s]."""
         return self.levels / self.cpu_s if self.cpu_s > 0 else 0.0
 
-    @property
-    def met_share(self) -> float:
-        """Share of attempts that give what was asked for."""
-        return self.met / self.attempts if self.attempts else 0.0
-
-    @property
-    def levels_per_1000_steps(self) -> float:
-        """Distinct levels by a thousand edits."""
-        return 1000 * self.levels / self.steps if self.steps else 0.0
-
 
 def measure(
     name: str,

@@ -6,8 +6,6 @@ published scenes. A *skeleton* is a sequence of actions; it solves the puzzle sy
 goal-object lying on the goal. Where things are is left to geometry (`planner.lgp`).
 """
 
-from collections import deque
-from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -100,20 +98,3 @@ class Domain:
     def is_solved(self, state: SymbolicState) -> bool:
         """Whether the goal-object lies on the goal."""
         return state.surfaces[self.goal_index] is Surface.GOAL
-
-    def skeletons(self, max_length: int) -> Iterator[Skeleton]:
-        """Every skeleton of at most `max_length` actions that solves the puzzle symbolically, breadth first.
-
-        Nothing follows after the goal is reached, so no skeleton begins with another one.
-        """
-        queue: deque[tuple[Skeleton, SymbolicState]] = deque([((), self.initial)])
-        while queue:
-            skeleton, state = queue.popleft()
-            if len(skeleton) == max_length:
-                continue
-            for action in self.actions(state):
-                extended, following = (*skeleton, action), self.successor(state, action)
-                if self.is_solved(following):
-                    yield extended
-                else:
-                    queue.append((extended, following))

@@ -18,11 +18,6 @@ def shortcut(path: FloatArray, space: ConfigurationSpace, rounds: int, rng: np.r
     return np.asarray(_shortened(np.ascontiguousarray(path), shares, space.bounds, *space.obstacles.arrays))
 
 
-def without_needless_points(path: FloatArray, space: ConfigurationSpace) -> FloatArray:
-    """From each way-point on goes straight to the last one that it sees."""
-    return np.asarray(_needed(np.ascontiguousarray(path), *space.obstacles.arrays))
-
-
 @njit(cache=True)
 def _shortened(
     path: FloatArray,
@@ -44,7 +39,7 @@ def _shortened(
 
 @njit(cache=True)
 def _needed(path: FloatArray, vertices: FloatArray, first: IntArray, rho: FloatArray, boxes: FloatArray) -> FloatArray:
-    """See `without_needless_points`."""
+    """From each way-point on goes straight to the last one that it sees."""
     kept = np.empty_like(path)
     kept[0] = path[0]
     n, i = 1, 0

@@ -20,7 +20,6 @@ from evaluate.statistics import (
     median_time,
     par2,
     solved_within,
-    success_rate,
     wilson_interval,
 )
 
@@ -75,9 +74,8 @@ TIMES = np.array([[1.0, np.inf, 2.0], [3.0, 5.0, np.nan]])
 """Two runs on three scenes: one is unsolved, one was not run."""
 
 
-def test_success_and_times_of_a_small_matrix():
-    """Four of five runs are solved, their mean is 11 / 4, the middle of all five is 3, PAR2 counts 20 for the other."""
-    assert success_rate(TIMES) == 0.8
+def test_times_of_a_small_matrix():
+    """The mean of the four solved runs of five is 11 / 4, the middle of all five is 3, PAR2 counts 20 for the other."""
     assert mean_time(TIMES) == 2.75
     assert median_time(TIMES) == 3.0
     assert par2(TIMES, limit=10.0) == (11 + 20) / 5
@@ -86,7 +84,7 @@ def test_success_and_times_of_a_small_matrix():
 def test_without_runs_there_is_no_number():
     """What was not run has no mean, and no bootstrap interval either."""
     nothing = np.full((2, 2), np.nan)
-    values = [success_rate(nothing), mean_time(nothing), median_time(nothing), par2(nothing, 1.0)]
+    values = [mean_time(nothing), median_time(nothing), par2(nothing, 1.0)]
     assert all(math.isnan(value) for value in values)
     interval = bootstrap_interval(nothing, mean_time, np.random.default_rng(0), resamples=10)
     assert all(math.isnan(limit) for limit in interval)

@@ -13,12 +13,13 @@ from planner.lgp_weights import Weights
 from planner.logic import Action, Domain, Skeleton, Surface
 from planner.problem import Problem
 from tests.planner.scenes import body, room, vectors, wall
+from tests.planner.skeletons import skeletons
 
 WEIGHTS = Weights()
 STEPS = 3
 PUT_AWAY = (Action(1), Action(1, Surface.FLOOR))
 DIRECT = (Action(0), Action(0, Surface.GOAL))
-SKELETONS = list(Domain(2, 0).skeletons(4))
+SKELETONS = list(skeletons(Domain(2, 0), 4))
 
 
 def problem_with(wall_at: tuple[float, float] = (0.0, 1.0)) -> Problem:

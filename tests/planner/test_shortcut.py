@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace, ObstacleSet
-from planner.shortcut import shortcut, without_needless_points
+from planner.shortcut import shortcut
 from tests.planner.plain_geometry import length, points, polygons
 from tests.planner.scenes import vectors
 
@@ -32,14 +32,14 @@ def test_result_is_free_and_not_longer(path: list[FloatArray], cores: list[Float
 def test_in_the_open_the_ends_remain():
     """Nothing in the way leaves a straight line."""
     zigzag = vectors([0, 0], [1, 1], [2, 0], [2, 2], [0, 1])
-    np.testing.assert_array_equal(without_needless_points(zigzag, EMPTY), zigzag[[0, -1]])
+    np.testing.assert_array_equal(shortcut(zigzag, EMPTY, 0, np.random.default_rng(0)), zigzag[[0, -1]])
     np.testing.assert_array_equal(shortcut(zigzag, EMPTY, 30, np.random.default_rng(0)), zigzag[[0, -1]])
 
 
 def test_needed_points_stay():
     """Of a tour around a square the corners stay, points on its edges go."""
     tour = vectors([-2, 0], [-1.5, 0.5], [-1, 1], [0, 1], [1, 1], [2, 0])
-    np.testing.assert_array_equal(without_needless_points(tour, SQUARE), tour[[0, 2, 4, 5]])
+    np.testing.assert_array_equal(shortcut(tour, SQUARE, 0, np.random.default_rng(0)), tour[[0, 2, 4, 5]])
 
 
 def test_random_shortcuts_approach_the_taut_string():
@@ -49,7 +49,7 @@ def test_random_shortcuts_approach_the_taut_string():
     taut = 2 + 2 * np.sqrt(2)
     assert taut <= length(after) + 1e-9
     assert length(after) < 1.05 * taut
-    assert length(without_needless_points(tour, SQUARE)) == length(tour)
+    assert length(shortcut(tour, SQUARE, 0, np.random.default_rng(0))) == length(tour)
 
 
 def test_same_seed_gives_the_same_path():
