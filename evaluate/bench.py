@@ -7,8 +7,8 @@ compared. Absolute times are those of the machine; ratios carry over to others.
 """
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -32,6 +32,7 @@ class Contest:
         peer_seeds: How often the peer is timed, at most `seeds`; None for as often.
         repeats: How often `work` and `peer_work` do the thing in one call; times are divided by it.
         prepare: What is done before the first turn; None for doing both once.
+        figures: Shares that belong to the thing, by name, found after the last turn; None without any.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Contest:
     peer_seeds: int | None = None
     repeats: int = 1
     prepare: Callable[[], object] | None = None
+    figures: Callable[[], Mapping[str, float]] | None = None
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,7 @@ class BenchRow:
         peer: How the peer does it; None without a peer.
         peer_median_s: Median time of the peer [s].
         ratio: How many times longer the peer takes: `peer_median_s / median_s`.
+        figures: The contest's shares, by name.
     """
 
     name: str
@@ -65,6 +68,7 @@ class BenchRow:
     peer: str | None
     peer_median_s: float | None
     ratio: float | None
+    figures: Mapping[str, float] = field(default_factory=dict)
 
 
 def measure(contest: Contest, clock: Callable[[], float] = time.perf_counter) -> BenchRow:
@@ -94,4 +98,5 @@ def measure(contest: Contest, clock: Callable[[], float] = time.perf_counter) ->
         peer=contest.peer,
         peer_median_s=peer_median,
         ratio=None if peer_median is None else peer_median / medians[0],
+        figures={} if contest.figures is None else contest.figures(),
     )

@@ -20,7 +20,7 @@ COLUMNS = (
     "mean pushes",
     "dependency",
     "Hamming distance",
-    "entropy of goal crate's cell [bit]",
+    "effective cells of the goal crate",
 )
 
 MEASUREMENTS_FILE = "measurements.jsonl"
@@ -97,15 +97,16 @@ def write_comparison(folder: Path, measurements: Sequence[Measurement]) -> None:
 
 _NOTE = (
     "Mean over the seeds ± standard deviation. An attempt is a drawn level of the baseline, an episode of a policy; a step "
-    "is an edit of one tile. Levels are distinct under turning and mirroring; CPU time includes the solver. Hamming distance "
-    "and entropy depend on the number of levels: compare them between rows with alike numbers."
+    "is an edit of one tile. Levels are distinct under turning and mirroring; CPU time includes the solver. The effective "
+    "cells of the goal crate are 2 to the power of the entropy of its cell: as many cells, all equally likely, would be as "
+    "diverse. They and the Hamming distance depend on the number of levels: compare rows with alike numbers."
 )
 
 _QUALITIES: tuple[Callable[[Measurement], float | None], ...] = (
     lambda m: m.mean_pushes,
     lambda m: m.dependency,
     lambda m: m.hamming,
-    lambda m: m.goal_entropy,
+    lambda m: None if m.goal_entropy is None else 2**m.goal_entropy,
 )
 
 

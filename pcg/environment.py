@@ -109,6 +109,9 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
         archive: (m, rows, columns) maps that novelty is measured against.
         render_mode: `ansi` (XSB text) or None.
         **settings: Further fields of `EpisodeSettings`, such as `change_share` and `step_share`.
+
+    Attributes:
+        episodes: The state: a batch of one.
     """
 
     metadata = {"render_modes": ["ansi"], "render_fps": 4}  # noqa: RUF012 - Gymnasium's own declaration is no ClassVar
@@ -132,7 +135,7 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
         self.render_mode = render_mode
         self._request = request
         self._tasks = tasks or TaskDistribution()
-        self._episodes = Episodes(self.settings, 1, archive)
+        self.episodes = Episodes(self.settings, 1, archive)
 
     @property
     def max_changes(self) -> int:
@@ -162,12 +165,12 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
         rng = self.np_random
         request = options.get("request", self._request)
         begun = beginning(rng, 1, self.settings, request, self._tasks, options.get("start"))
-        self._episodes.begin(rng, np.array([0]), begun)
+        self.episodes.begin(rng, np.array([0]), begun)
         return self._observation(), self._info()
 
     def step(self, action: np.int64) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Carries out an action."""
-        done = self._episodes.step(np.array([action], dtype=np.int64))
+        done = self.episodes.step(np.array([action], dtype=np.int64))
         reward, terminated, truncated = float(done.reward[0]), bool(done.terminated[0]), bool(done.truncated[0])
         return self._observation(), reward, terminated, truncated, self._info()
 
@@ -177,15 +180,15 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
 
     def level(self) -> Level:
         """The map, with its goal crate if it is solved."""
-        goal = int(self._episodes.statistics[0, Column.GOAL])
+        goal = int(self.episodes.statistics[0, Column.GOAL])
         crate = divmod(goal, self.settings.columns)
-        return Level(self._episodes.maps[0], goal_crate=None if goal < 0 else crate)
+        return Level(self.episodes.maps[0], goal_crate=None if goal < 0 else crate)
 
     def _observation(self) -> Observation:
-        return {name: part[0] for name, part in observation_parts(self._episodes).items()}
+        return {name: part[0] for name, part in observation_parts(self.episodes).items()}
 
     def _info(self) -> dict[str, Any]:
-        episodes = self._episodes
+        episodes = self.episodes
         counted = zip(_COUNTED, episodes.statistics[0].tolist(), strict=True)
         return {**dict(counted), "steps": int(episodes.steps[0]), "changes": int(episodes.changes[0])}
 

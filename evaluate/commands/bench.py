@@ -52,7 +52,7 @@ def _time_parts(effort: Effort, *, as_json: bool) -> None:
     if as_json:
         print_json({"rows": [asdict(row) for row in rows]})
     else:
-        columns = ["contest", "median", "95 %", "seeds", "peer", "peer's median", "times faster"]
+        columns = ["contest", "median", "95 %", "seeds", "peer", "peer's median", "times faster", "besides"]
         print_table(columns, [_cells(row) for row in rows])
         print_line(f"a puzzle that is not solved within {effort.time_limit:g} s counts with this time")
 
@@ -71,4 +71,5 @@ def _time_studies(trials: int, *, as_json: bool) -> None:
 
 def _cells(row: BenchRow) -> tuple[object, ...]:
     peer_median = None if row.peer_median_s is None else duration(row.peer_median_s)
-    return row.name, duration(row.median_s), duration(row.p95_s), row.n, row.peer, peer_median, row.ratio
+    besides = ", ".join(f"{name.replace('_', ' ')} {value:.0%}" for name, value in row.figures.items())
+    return row.name, duration(row.median_s), duration(row.p95_s), row.n, row.peer, peer_median, row.ratio, besides

@@ -1,6 +1,8 @@
 """`manipuzzle compare-generators`: the random baseline, untrained and trained policies on the same tasks."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -11,6 +13,7 @@ from evaluate.inputs import require_choice, require_writable
 from evaluate.output import print_json, print_line, print_table, progress
 from pcg.agents import read_agents
 from pcg.compare import Measurement, band_tasks, compare, standard_tasks
+from pcg.policy import load_policy
 from pcg.policy_source import PolicySource, UntrainedPolicy, policies_of
 from pcg.random_source import RandomSource
 from pcg.request import LevelSource
@@ -33,6 +36,10 @@ def run(
     bands: Annotated[
         bool, typer.Option("--bands", help="The tasks are the agents' bands of walls and pushes, instead.")
     ] = False,
+    policy: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="A policy of your own (.onnx) beside the others; repeat for several."),
+    ] = None,
     json: Json = False,
 ) -> bool:
     """Let random baseline, untrained and trained policies make levels; DIR/comparison.md compares yield and diversity.
@@ -44,7 +51,7 @@ def run(
     for name in task or []:
         require_choice("--task", name, list(known))
     chosen = [known[name] for name in task or []] or list(known.values())
-    contestants = sources()
+    contestants = sources(policy or [])
     require_writable(out)
     measurements: list[Measurement] = []
     runs = compare(contestants, chosen, range(seeds), cpu_limit=seconds, max_levels=max_levels)
@@ -62,8 +69,8 @@ def run(
     return True
 
 
-def sources() -> dict[str, LevelSource]:
-    """The contestants by name.
+def sources(files: Sequence[Path] = ()) -> dict[str, LevelSource]:
+    """The contestants by name; the policies in the files by their paths.
 
     Raises:
         InputError: a policy is missing or cannot be read.
@@ -75,4 +82,5 @@ def sources() -> dict[str, LevelSource]:
         "random, any density": RandomSource(redraws_density=True),
         **{f"untrained {name}": PolicySource(policy) for name, policy in untrained.items()},
         **{name: PolicySource(policy) for name, policy in policies.items()},
+        **{str(path): PolicySource(load_policy(path)) for path in files},
     }

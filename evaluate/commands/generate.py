@@ -17,7 +17,8 @@ from pcg.errors import InputError
 from pcg.frozen import read_frozen
 from pcg.generate import RANDOM_AGENT, generated_levels
 from pcg.level_set import GeneratedLevel, manifest_entry, write_level_set
-from pcg.policy_source import source_of
+from pcg.policy import load_policy
+from pcg.policy_source import PolicySource, source_of
 from pcg.random_source import RandomSource
 from pcg.request import LevelSource, Request
 
@@ -37,7 +38,11 @@ def run(
     *,
     out: Out,
     agent: Annotated[
-        str, typer.Option(metavar="NAME", help="What proposes levels: random, or m0 ... m35 of data/agents.yaml.")
+        str,
+        typer.Option(
+            metavar="NAME|FILE",
+            help="What proposes levels: random, m0 ... m35 of data/agents.yaml, or a policy of your own (.onnx).",
+        ),
     ] = "random",
     count: Annotated[int, typer.Option(metavar="N", min=1, help="Number of levels.")] = 10,
     seed: Seed = 0,
@@ -112,7 +117,7 @@ def request_of(
     """What the options ask for: the request of the agent, changed where an option is given.
 
     Args:
-        agent: Name of the agent, or `random`.
+        agent: Name of the agent, `random`, or the file of a policy.
         frozen: File with frozen tiles, which decide on rows and columns.
         pushes: Band of the pushes.
         wall_density: Band of the wall density.
@@ -121,7 +126,7 @@ def request_of(
     Raises:
         InputError: there is no such agent, the options contradict each other, or the file of frozen tiles is no such.
     """
-    request = Request() if agent == RANDOM_AGENT else agent_named(agent).request
+    request = _default_request(agent)
     given = {name: value for name, value in others.items() if value is not None}
     given["pushes"] = _filled(pushes, request.pushes)
     given["wall_density"] = _filled(wall_density, request.wall_density)
@@ -138,13 +143,29 @@ def _filled(band: Band, default: tuple[float, float]) -> tuple[float, ...]:
     return tuple(end if given is None else given for given, end in zip(band, default, strict=True))
 
 
+def _default_request(agent: str) -> Request:
+    """What is asked for without options: of a policy in a file, levels of the size that it makes."""
+    if agent == RANDOM_AGENT:
+        return Request()
+    if not _is_file(agent):
+        return agent_named(agent).request
+    made = load_policy(Path(agent)).settings
+    return Request(made.rows, made.columns, made.reward.crates, made.reward.targets)
+
+
+def _is_file(agent: str) -> bool:
+    return agent.endswith(".onnx")
+
+
 def source_named(agent: str) -> LevelSource:
     """The source of an agent's levels.
 
     Raises:
         InputError: there is no such agent, or its policy cannot be read.
     """
-    return RandomSource() if agent == RANDOM_AGENT else source_of(agent_named(agent))
+    if agent == RANDOM_AGENT:
+        return RandomSource()
+    return PolicySource(load_policy(Path(agent))) if _is_file(agent) else source_of(agent_named(agent))
 
 
 def generate(count: int, seed: int, request: Request, folder: Path, agent: str = RANDOM_AGENT) -> list[GeneratedLevel]:
@@ -154,7 +175,9 @@ def generate(count: int, seed: int, request: Request, folder: Path, agent: str =
         InputError: the generator finds no more levels, or the folder cannot be written.
     """
     levels: list[GeneratedLevel] = []
-    stream = islice(generated_levels(source_named(agent), request, seed, agent), count)
+    source = source_named(agent)
+    name = source.representation or agent if _is_file(agent) else agent
+    stream = islice(generated_levels(source, request, seed, name), count)
     try:
         with progress() as bar:
             # What was appended before an interrupt stays in the list.

@@ -14,7 +14,7 @@ from evaluate.bench_peers import STEP, ShapelyObstacles, ompl_with_sampled_check
 from evaluate.cli import app
 from planner.problem import Problem
 
-KEYS = {"name", "median_s", "p95_s", "n", "peer", "peer_median_s", "ratio"}
+KEYS = {"name", "median_s", "p95_s", "n", "peer", "peer_median_s", "ratio", "figures"}
 
 
 def test_the_document_lists_every_contest():

@@ -10,11 +10,12 @@ from typer.testing import CliRunner, Result
 
 from evaluate.cli import app
 from evaluate.commands import corpus as corpus_command
-from pcg.agents import Agent
+from pcg.agents import Agent, policy_path
 from pcg.compare import standard_tasks
 from pcg.corpus import CorpusSettings, build_corpus
 from pcg.frozen import read_frozen
 from pcg.level_set import read_level_set, read_manifest
+from pcg.policy import load_policy
 from pcg.request import Request
 
 FROZEN = """\
@@ -73,6 +74,16 @@ def test_agents_make_what_they_are_asked_for(run: Run, tmp_path: Path, agent: st
     assert again == {**found, "out": "again"}
 
 
+def test_a_policy_of_ones_own(run: Run, tmp_path: Path):
+    """Its file stands for an agent: levels of the size that it makes, called after its representation."""
+    weights = str(policy_path("wide"))
+    found = document(run("generate", "--agent", weights, "--count", "2", "--max-pushes", "11", "--out", "s", "--json"))
+    assert found["agent"] == weights
+    entries = read_manifest(tmp_path / "s" / "manifest.jsonl")
+    assert [(entry.name, entry.agent) for entry in entries] == [("wide-0-0", "wide"), ("wide-0-1", "wide")]
+    assert {entry.weights_hash for entry in entries} == {load_policy(Path(weights)).weights_hash}
+
+
 @pytest.mark.parametrize("agent", ["random", "m12"])
 def test_frozen_tiles_are_kept(run: Run, tmp_path: Path, agent: str):
     """Every level has them; their file decides on rows and columns, unless the policy has a size of its own."""
@@ -95,6 +106,7 @@ def ten_by_ten() -> str:
     [
         (["--agent", "m36"], "--agent: found 'm36', allowed are random, m0 ... m35"),
         (["--agent", "m0", "--rows", "7"], "policy narrow: asked for 7 x 10 cells"),
+        (["--agent", "nothing.onnx"], "nothing.onnx: "),
         (["--frozen", "nothing.txt"], "nothing.txt: no such file"),
         (["--min-pushes", "9", "--max-pushes", "3"], "options: pushes (9, 3) must be a range"),
         (["--min-density", "2"], "Invalid value for '--min-density'"),
@@ -148,10 +160,11 @@ def test_compare_writes_tables(run: Run, tmp_path: Path):
     """A row for every source in both tables, in Markdown and as measurements; an unknown task is refused."""
     task = standard_tasks()[0].name
     options = ["--seeds", "1", "--seconds", "0.05", "--max-levels", "3", "--task", task]
+    options += ["--policy", str(policy_path("wide"))]
     found = document(run("compare-generators", "--out", "c", *options, "--json"))["measurements"]
     assert {m["task"] for m in found} == {task}
     sources = {m["source"] for m in found}
-    assert {"random", "narrow", "untrained narrow", "turtle", "wide"} <= sources
+    assert {"random", "narrow", "untrained narrow", "turtle", "wide", str(policy_path("wide"))} <= sources
     assert len(found) == len(sources)
     assert len((tmp_path / "c" / "measurements.jsonl").read_text().splitlines()) == len(found)
     table = (tmp_path / "c" / "comparison.md").read_text()
