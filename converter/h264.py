@@ -272,9 +272,8 @@ def _picture_parameters() -> bytes:
     bits.u(0b000, 3)  # weighted_pred_flag, weighted_bipred_idc
     for _ in range(3):
         bits.ue(0)  # pic_init_qp_minus26, pic_init_qs_minus26, chroma_qp_index_offset
-    bits.u(
-        0b100, 3
-    )  # deblocking_filter_control_present_flag, constrained_intra_pred_flag, redundant_pic_cnt_present_flag
+    bits.u(1, 1)  # deblocking_filter_control_present_flag
+    bits.u(0b00, 2)  # constrained_intra_pred_flag, redundant_pic_cnt_present_flag
     return bits.payload()
 
 

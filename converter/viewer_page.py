@@ -30,10 +30,10 @@ import numpy as np
 from converter.animate_plan import FIRST_REST_S, HELD_OUTLINE, LAST_REST_S, REST_S
 from converter.drawing import Shape
 from converter.plan import Plan
-from converter.render_plan import carries_of, placements
+from converter.render_plan import Placement, carries_of, placements
 from converter.render_scene import agent_shape, body_shape, object_color, room_drawing
 from converter.replay import replay
-from converter.scene import Scene
+from converter.scene import Body, Scene
 from converter.shape import FloatArray
 from converter.svg import Frame, hex_color, path_data
 from converter.theme import PAPER, Theme
@@ -76,7 +76,6 @@ def plan_payload(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> dict[str,
     room = room_drawing(scene, theme)
     (left, low), (right, high) = room.lower, room.upper
     steps = replay(scene, plan)
-    places = placements(carries_of(scene, steps))
     agent = agent_shape(scene, np.zeros(2), room.unit, theme)
     return {
         "scene": scene.name,
@@ -88,35 +87,28 @@ def plan_payload(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> dict[str,
         "pick_places": plan.pick_places,
         "view": _rounded(np.array([left, -high, right - left, high - low])),
         "unit": room.unit,
-        "colors": {
-            "page": hex_color(theme.page),
-            "outline": hex_color(theme.outline),
-            "move": hex_color(theme.move),
-            "badge": hex_color(theme.badge),
-            "subgoal": hex_color(theme.subgoal),
-        },
+        "colors": {name: hex_color(getattr(theme, name)) for name in ("page", "outline", "move", "badge", "subgoal")},
         "widths": {"move": theme.move_width, "carry": theme.carry_width, "text": theme.text_height},
         "held_outline": HELD_OUTLINE,
         "rests_s": {"first": FIRST_REST_S, "step": REST_S, "last": LAST_REST_S},
         "room": [_shape(item) for item in room.items if isinstance(item, Shape)],
-        "objects": [
-            {
-                "name": body.name,
-                "start": _rounded(body.position[:2]),
-                **_shape(body_shape(body, object_color(scene, body, theme), room.unit, theme, np.zeros(2))),
-            }
-            for body in scene.objects
-        ],
+        "objects": [_object(scene, body, room.unit, theme) for body in scene.objects],
         "agent": {"start": _rounded(scene.agent.position), **_shape(agent)},
         "segments": [{"carried": step.carried, "path": _rounded(step.segment.path)} for step in steps],
-        "placements": [
-            {
-                "object": scene.object_names.index(place.body.name),
-                "position": _rounded(place.position),
-                "numbers": list(place.numbers),
-            }
-            for place in places
-        ],
+        "placements": [_placement(scene, place) for place in placements(carries_of(scene, steps))],
+    }
+
+
+def _object(scene: Scene, body: Body, unit: float, theme: Theme) -> dict[str, Any]:
+    shape = body_shape(body, object_color(scene, body, theme), unit, theme, np.zeros(2))
+    return {"name": body.name, "start": _rounded(body.position[:2]), **_shape(shape)}
+
+
+def _placement(scene: Scene, place: Placement) -> dict[str, Any]:
+    return {
+        "object": scene.object_names.index(place.body.name),
+        "position": _rounded(place.position),
+        "numbers": list(place.numbers),
     }
 
 

@@ -3,6 +3,7 @@
 import math
 from functools import partial
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -39,33 +40,8 @@ def methods_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table:
         rng: Source of the bootstrap samples.
     """
     times, limit = planning_times(frame), time_limit(frame)
-    totals = frame.group_by("method").agg(
-        pl.len(),
-        pl.col("solved").sum().alias("n_solved"),
-        pl.col("accepted").sum().alias("n_accepted"),
-        pl.col("accepted").count().alias("n_asked"),
-        pl.col("pick_places").filter("solved").mean(),
-        pl.col("path_length_m").filter("solved").mean(),
-    )
-    by_method = {row["method"]: row for row in totals.iter_rows(named=True)}
-    rows = []
-    for method in names_in(frame, "method"):
-        total, matrix = by_method[method], times[method]
-        low, high = wilson_interval(total["n_solved"], total["len"])
-        rate = total["n_solved"] / total["len"]
-        rows.append(
-            (
-                Entry(method),
-                Entry(f"{total['n_solved']}/{total['len']}", value=rate),
-                Entry(f"{percent(rate)} ({100 * low:.0f} to {100 * high:.0f})", value=rate),
-                Entry(f"{total['n_accepted']}", value=total["n_accepted"]) if total["n_asked"] else BLANK,
-                _interval_entry(matrix, mean_time, rng),
-                _interval_entry(matrix, median_time, rng),
-                _interval_entry(matrix, partial(par2, limit=limit), rng),
-                _plain_entry(total["pick_places"]),
-                _plain_entry(total["path_length_m"]),
-            )
-        )
+    totals = {row["method"]: row for row in _totals(frame).iter_rows(named=True)}
+    rows = (_method_row(totals[method], times[method], limit, rng) for method in names_in(frame, "method"))
     columns = (
         "method",
         "solved",
@@ -84,6 +60,35 @@ def methods_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table:
         f"limit of {limit:g} s. Intervals of times: 95 %, bootstrap over {_unit(times)}."
     )
     return Table("methods", "Methods over all scenes", note, columns, tuple(rows))
+
+
+def _totals(frame: pl.DataFrame) -> pl.DataFrame:
+    """A row a method: trials, solved and accepted ones, and means over the solved ones."""
+    return frame.group_by("method").agg(
+        pl.len(),
+        pl.col("solved").sum().alias("n_solved"),
+        pl.col("accepted").sum().alias("n_accepted"),
+        pl.col("accepted").count().alias("n_asked"),
+        pl.col("pick_places").filter("solved").mean(),
+        pl.col("path_length_m").filter("solved").mean(),
+    )
+
+
+def _method_row(total: dict[str, Any], times: FloatArray, limit: float, rng: np.random.Generator) -> tuple[Entry, ...]:
+    """The entries of a method, from its row of `_totals` and its `times` (runs, scenes) [s]."""
+    low, high = wilson_interval(total["n_solved"], total["len"])
+    rate = total["n_solved"] / total["len"]
+    return (
+        Entry(total["method"]),
+        Entry(f"{total['n_solved']}/{total['len']}", value=rate),
+        Entry(f"{percent(rate)} ({100 * low:.0f} to {100 * high:.0f})", value=rate),
+        Entry(f"{total['n_accepted']}", value=total["n_accepted"]) if total["n_asked"] else BLANK,
+        _interval_entry(times, mean_time, rng),
+        _interval_entry(times, median_time, rng),
+        _interval_entry(times, partial(par2, limit=limit), rng),
+        _plain_entry(total["pick_places"]),
+        _plain_entry(total["path_length_m"]),
+    )
 
 
 def comparison_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table | None:

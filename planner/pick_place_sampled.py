@@ -1,6 +1,6 @@
 """Pick-and-place subproblems as published: switch configurations by a nonlinear program, motions by RRT-Connect.
 
-The setting `motion` puts another motion planner in the place of OMPL's RRT-Connect.
+The setting `motion` puts another motion planner in the place of RRT-Connect.
 """
 
 from collections import Counter
