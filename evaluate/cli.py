@@ -40,6 +40,7 @@ COMMANDS = {
     "diff": "Compare the results of two studies.",
     "bench": "Time the parts, with peers beside them.",
     "corpus": "Build the corpus of 360 levels, check it, plot it.",
+    "data": "Print where the puzzles, policies and studies are.",
 }
 """Names, with what the list of commands says of them; the module of `a-b` is `evaluate.commands.a_b`."""
 

@@ -5,6 +5,7 @@ number of pushes, `random_levels` makes new ones and `write_level_set` keeps the
 needs NumPy and Pydantic only.
 """
 
+from pcg.compile_cache import provide_compile_cache
 from pcg.dependency import has_dependency
 from pcg.errors import InputError
 from pcg.frozen import FrozenTiles, read_frozen
@@ -71,3 +72,5 @@ __all__ = [
     "write_level_set",
     "write_levels",
 ]
+
+provide_compile_cache()

@@ -1,16 +1,15 @@
-"""Where the data that comes with the product is: puzzles, scenes, demonstrations, policies, studies."""
+"""Where the data that comes with the product is: puzzles, corpus, demonstrations, policies, studies."""
 
-import sys
 from pathlib import Path
 
 from pcg.errors import InputError
 
-_PLACES = (Path(__file__).parents[1] / "data", Path(sys.prefix) / "share" / "manipuzzle" / "data")
-"""In a checkout beside the packages; in an installation where the wheel puts shared data."""
+_PLACES = (Path(__file__).parent / "data", Path(__file__).parents[1] / "data")
+"""In an installation inside this package; in a checkout beside the packages."""
 
 
 def data_folder() -> Path:
-    """The folder `data` of the checkout or of the installation.
+    """The folder `data` of the installation or of the checkout.
 
     Raises:
         InputError: it was not installed.

@@ -14,9 +14,11 @@ def test_the_checkout_holds_the_puzzles():
 
 
 def test_the_first_place_that_exists_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """Without a checkout the installation's shared data is used."""
+    """An installation's own data come before a folder `data` that happens to lie beside the packages."""
+    monkeypatch.setattr(data_folder, "_PLACES", (tmp_path / "installed", tmp_path / "beside"))
+    (tmp_path / "beside").mkdir()
+    assert data_folder.data_folder() == tmp_path / "beside"
     (tmp_path / "installed").mkdir()
-    monkeypatch.setattr(data_folder, "_PLACES", (tmp_path / "checkout", tmp_path / "installed"))
     assert data_folder.data_folder() == tmp_path / "installed"
 
 

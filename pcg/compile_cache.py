@@ -1,0 +1,39 @@
+"""Where compiled code is kept if neither the installation nor the home folder can be written to.
+
+Numba keeps what it has compiled beside the source or else in the user's cache folder, and where it can write to neither
+(a read-only image run by a user without a home) it refuses to compile at all. There a private folder for temporary
+files takes their place. `NUMBA_CACHE_DIR` chooses another one.
+"""
+
+import contextlib
+import os
+import stat
+import tempfile
+from pathlib import Path
+
+VARIABLE = "NUMBA_CACHE_DIR"
+
+
+def provide_compile_cache() -> None:
+    """Sets `NUMBA_CACHE_DIR` if Numba would find no folder to write to; to be called before Numba is imported."""
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+    chosen = [Path(os.environ[VARIABLE])] if os.environ.get(VARIABLE) else []
+    if not any(_can_write(folder) for folder in (*chosen, Path(__file__).parent / "__pycache__", home)):
+        os.environ[VARIABLE] = str(_private_folder())
+
+
+def _can_write(folder: Path) -> bool:
+    """Whether files can be made in `folder`, which may have to be made first."""
+    existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    return existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)
+
+
+def _private_folder() -> Path:
+    """A folder that nobody else can write to: compiled code is loaded by unpickling."""
+    folder = Path(tempfile.gettempdir()) / f"manipuzzle-{os.getuid()}"
+    with contextlib.suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    found = folder.lstat()
+    if stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077:
+        return folder
+    return Path(tempfile.mkdtemp(prefix="manipuzzle-"))

@@ -1,0 +1,68 @@
+"""Where compiled code is kept if the usual places cannot be written to."""
+
+import os
+import stat
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from pcg import compile_cache
+from pcg.compile_cache import VARIABLE, provide_compile_cache
+
+
+@pytest.fixture
+def nothing_writable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Only the folder for temporary files can be written to; returns it."""
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setattr(compile_cache, "_can_write", lambda _: False)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    return tmp_path
+
+
+def test_numba_chooses_where_it_can(monkeypatch: pytest.MonkeyPatch):
+    """In a checkout nothing is set: the cache lies beside the source."""
+    monkeypatch.delenv(VARIABLE, raising=False)
+    provide_compile_cache()
+    assert VARIABLE not in os.environ
+
+
+def test_a_chosen_folder_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """A folder that the user chose stays, whatever else can be written to."""
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "chosen"))
+    provide_compile_cache()
+    assert os.environ[VARIABLE] == str(tmp_path / "chosen")
+
+
+def test_a_private_folder_takes_their_place(nothing_writable: Path):
+    """Where nothing can be written to the cache is temporary, the same one each time, and the user's alone."""
+    provide_compile_cache()
+    folder = Path(os.environ[VARIABLE])
+    assert folder.parent == nothing_writable
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    provide_compile_cache()
+    assert os.environ[VARIABLE] == str(folder)
+
+
+@pytest.mark.parametrize("kind", ["open", "link", "file"])
+def test_nobody_else_can_prepare_the_folder(nothing_writable: Path, kind: str):
+    """A folder that others can write to, a link or a file in its place is not used: the cache is unpickled."""
+    expected = nothing_writable / f"manipuzzle-{os.getuid()}"
+    if kind == "open":
+        expected.mkdir()
+        expected.chmod(0o777)
+    elif kind == "link":
+        expected.symlink_to(nothing_writable)
+    else:
+        expected.write_text("")
+    provide_compile_cache()
+    folder = Path(os.environ[VARIABLE])
+    assert folder != expected
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+
+
+@pytest.mark.parametrize(("name", "writable"), [("", True), ("deep/er", True), ("file", False), ("file/below", False)])
+def test_folders_may_have_to_be_made(tmp_path: Path, name: str, *, writable: bool):
+    """A folder can be written to if it, or the nearest one above it that exists, can."""
+    (tmp_path / "file").write_text("")
+    assert compile_cache._can_write(tmp_path / name) is writable  # noqa: SLF001 - replaced in the other tests
