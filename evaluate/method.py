@@ -8,7 +8,7 @@ function (here), and any program (`evaluate.program`).
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,6 +19,7 @@ from evaluate.digest import digest
 from evaluate.placements import with_placements
 from evaluate.references import Reference
 from planner import PlanResult, Settings, search, solve
+from planner.infeasible import with_proof
 from planner.subgoals_human import demonstration_path
 
 
@@ -57,7 +58,8 @@ class OwnPlanner:
             return solve(scene, settings, rng).to_plan(scene, settings, seed)
         subgoals = None if self.subgoals is None else self.subgoals.load()
         heuristic = None if self.heuristic is None else self.heuristic.load()
-        result = search.solve(scene, settings, rng, generator=subgoals, heuristic=heuristic)
+        solver = partial(search.solve, scene, settings, rng, generator=subgoals, heuristic=heuristic)
+        result = with_proof(lambda stop: solver(should_stop=stop), scene, lambda: False)
         return result.to_plan(scene, settings, seed)
 
     def document(self) -> dict[str, Any]:

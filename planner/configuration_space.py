@@ -18,7 +18,10 @@ from planner import kernel
 from planner.minkowski import minkowski_sum
 
 _ARC_STEP = np.pi / 8
-"""Angle between the tangents that replace an arc: the corners stand off by at most 2 % of the radius."""
+"""Angle between the tangents that replace an arc."""
+
+ARC_EXCESS = 1 / np.cos(_ARC_STEP / 2) - 1
+"""Share of the radius by which the corners between these tangents stand off at most: 2 %."""
 
 _MARGIN = 1e-6
 """What lies less deep [m] behind the tangents of a corner may be free by rounding or by a numeric slack."""

@@ -43,6 +43,10 @@ class ContactCurve:
         x, y, angle, reach = (np.interp(arc_length, position, column) for column in columns)
         return np.column_stack([x + reach * np.cos(angle), y + reach * np.sin(angle)])
 
+    def encloses(self, position: FloatArray) -> bool:
+        """Whether an agent with its centre at `position` (2,) [m], relative to the body, is nearer than touching."""
+        return not points_free(position[None], *self._interior.arrays)[0]
+
     def free_stretches(self, obstacles: ObstacleSet) -> FloatArray:
         """The stretches (k, 2) [m], from and to in arc length, on which the agent lies in none of `obstacles`.
 

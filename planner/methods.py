@@ -1,12 +1,14 @@
 """Which search answers to which method's name."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from converter.scene import Scene
 from planner import push, search
+from planner.infeasible import with_proof
 from planner.result import PlanResult, Progress
 from planner.settings import METHODS, Settings
 
@@ -78,10 +80,11 @@ def solve(
 
     Returns:
         The first plan found, or with `settings.improve` one that is as good or better. Its `time_s` is the time to the
-        first plan in either case.
+        first plan in either case. Without a plan it is `infeasible` if there is a proof; see `planner.infeasible`.
 
     Raises:
         InputError: bodies of the scene overlap at the start, or the scene lacks what the method needs.
     """
-    result = SOLVERS[settings.method](scene, settings, rng, should_stop=should_stop, on_progress=on_progress)
+    solver = partial(SOLVERS[settings.method], scene, settings, rng, on_progress=on_progress)
+    result = with_proof(lambda stop: solver(should_stop=stop), scene, should_stop)
     return _improve(scene, result, settings, rng, should_stop) if settings.improve else result

@@ -66,9 +66,9 @@ class Problem:
         self.goal_index = scene.object_names.index(scene.goal.object)
         self.initial = Configuration(scene.agent.position, np.array([body.position[:2] for body in scene.objects]))
         tolerance, objects = scene.tolerance, scene.objects
-        for_agent = _once_a_shape(partial(agent_obstacles, scene.agent, tolerance=tolerance))
-        for_objects = [_once_a_shape(partial(body_obstacles, moving, tolerance=tolerance)) for moving in objects]
-        for_sight = _once_a_shape(partial(sight_obstacles, tolerance=tolerance))
+        for_agent = once_a_shape(partial(agent_obstacles, scene.agent, tolerance=tolerance))
+        for_objects = [once_a_shape(partial(body_obstacles, moving, tolerance=tolerance)) for moving in objects]
+        for_sight = once_a_shape(partial(sight_obstacles, tolerance=tolerance))
         _require_valid_start(scene, for_agent, for_objects)
         self.agent_walls = _fixed(scene.walls, for_agent)
         self.agent_objects = [for_agent(body) for body in objects]
@@ -144,7 +144,7 @@ RelativeObstacles = Callable[[Body], ObstacleSet]
 """The obstacles that a body is to some moving body, relative to the position of the former."""
 
 
-def _once_a_shape(obstacles: RelativeObstacles) -> RelativeObstacles:
+def once_a_shape(obstacles: RelativeObstacles) -> RelativeObstacles:
     """The same function, which computes bodies that differ in their places only once."""
     known: dict[tuple[object, ...], ObstacleSet] = {}
 

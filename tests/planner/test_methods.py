@@ -31,10 +31,12 @@ def test_the_method_of_the_settings_is_called_with_everything(method: str, monke
         return answer
 
     monkeypatch.setattr(methods, "SOLVERS", {method: solver})
-    settings, rng = Settings(method=method), np.random.default_rng(0)
-    callbacks = {"should_stop": lambda: False, "on_progress": lambda _: None}
-    assert methods.solve(OPEN, settings, rng, **callbacks) is answer
-    assert calls == [(OPEN, settings, rng, *callbacks.values())]
+    settings, rng, reports = Settings(method=method), np.random.default_rng(0), list[Progress]()
+    assert methods.solve(OPEN, settings, rng, should_stop=lambda: True, on_progress=reports.append) is answer
+    ((*arguments, on_progress, should_stop),) = calls
+    assert arguments == [OPEN, settings, rng]
+    assert on_progress == reports.append
+    assert should_stop()
 
 
 @pytest.mark.parametrize("method", ["Rnd+FPR", "MBTS", "MBTS-rrt"])
