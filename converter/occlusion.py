@@ -7,7 +7,8 @@ closer to it than r.
 
 import numpy as np
 
-from converter.scene import NUMERIC_SLACK, Body, Scene
+from converter.polyline import point_segment_distances
+from converter.scene import NUMERIC_SLACK, Body, Scene, heights_meet
 from converter.shape import FloatArray
 
 
@@ -21,7 +22,7 @@ def occluded(scene: Scene) -> bool:
     others = [body for body in (*scene.walls, *scene.objects) if body is not goal_object]
     intervals = ((0.0, scene.agent.height), goal_object.bottom_top)
     return any(
-        _overlap(body.bottom_top, interval) and body_blocks(body, start, end)
+        heights_meet(body.bottom_top, interval) and body_blocks(body, start, end)
         for body in others
         for interval in intervals
     )
@@ -36,10 +37,6 @@ def body_blocks(body: Body, start: FloatArray, end: FloatArray) -> bool:
         if part.edge_radius > 0 and _distance(start, end, polygon) < part.edge_radius - NUMERIC_SLACK:
             return True
     return False
-
-
-def _overlap(a: tuple[float, float], b: tuple[float, float]) -> bool:
-    return min(a[1], b[1]) - max(a[0], b[0]) > NUMERIC_SLACK
 
 
 def _enters(start: FloatArray, end: FloatArray, polygon: FloatArray) -> bool:
@@ -59,15 +56,6 @@ def _enters(start: FloatArray, end: FloatArray, polygon: FloatArray) -> bool:
 
 def _distance(start: FloatArray, end: FloatArray, polygon: FloatArray) -> float:
     """Distance [m] between a segment and a convex (n, 2) polygon that it does not enter."""
-    following = np.roll(polygon, -1, axis=0)
-    from_ends = min(_point_distance(point, polygon, following) for point in (start, end))
-    from_vertices = min(_point_distance(vertex, start[np.newaxis], end[np.newaxis]) for vertex in polygon)
-    return min(from_ends, from_vertices)
-
-
-def _point_distance(point: FloatArray, starts: FloatArray, ends: FloatArray) -> float:
-    """Distance [m] from a point (2,) to the nearest of n segments, (n, 2) each."""
-    along = ends - starts
-    squares = np.maximum((along**2).sum(axis=1), np.finfo(np.float64).tiny)
-    t = np.clip(((point - starts) * along).sum(axis=1) / squares, 0.0, 1.0)
-    return float(np.hypot(*(starts + t[:, np.newaxis] * along - point).T).min())
+    from_ends = point_segment_distances(np.stack([start, end]), polygon, np.roll(polygon, -1, axis=0))
+    from_vertices = point_segment_distances(polygon, start[np.newaxis], end[np.newaxis])
+    return float(min(from_ends.min(), from_vertices.min()))

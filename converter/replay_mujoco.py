@@ -207,7 +207,7 @@ class _World:
             disturbance=disturbance,
             tracking_error=tracking_error,
             goal_reached=goal.contains(place),
-            goal_distance=float(np.hypot(*np.maximum(np.abs(place - goal.position) - goal.size / 2, 0.0))),
+            goal_distance=goal.distance(place),
             allowed=self._scene.tolerance + ENGINE_SLACK,
         )
 

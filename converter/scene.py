@@ -132,6 +132,10 @@ class Goal:
         """Whether the point `xy` (2,) [m] lies in the rectangle; its border belongs to it."""
         return bool((np.abs(xy - self.position) <= self.size / 2 + NUMERIC_SLACK).all())
 
+    def distance(self, xy: FloatArray) -> float:
+        """How far the point `xy` (2,) is from the rectangle [m]; 0 inside."""
+        return float(np.hypot(*np.maximum(np.abs(xy - self.position) - self.size / 2, 0.0)))
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
@@ -206,6 +210,11 @@ class Scene:
             "goal": [self.goal.object, _rounded(self.goal.position), _rounded(self.goal.size)],
         }
         return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def heights_meet(first: tuple[float, float], second: tuple[float, float]) -> bool:
+    """Whether two height intervals [m] overlap by more than rounding; bodies on top of each other do not."""
+    return min(first[1], second[1]) - max(first[0], second[0]) > NUMERIC_SLACK
 
 
 def _rounded(values: float | FloatArray) -> Any:

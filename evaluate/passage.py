@@ -8,6 +8,7 @@ from the agent's own place, where it can get without coming closer to any wall.
 
 import numpy as np
 
+from converter.polyline import point_segment_distances
 from converter.scene import Scene
 from converter.shape import FloatArray
 from planner.configuration_space import ConfigurationSpace, ObstacleSet
@@ -59,11 +60,11 @@ class _Places:
         self.at_goal = touching(curve, problem.agent_walls, placements)
 
 
-def goal_grid(scene: Scene) -> FloatArray:
-    """(n, 2) [m], world: points on a grid that fills the goal rectangle, its centre first."""
-    steps = np.linspace(-0.5, 0.5, GOAL_GRID)
-    offsets = np.array([(x, y) for x in steps for y in steps])
-    nearest_first = np.argsort(np.hypot(*offsets.T), kind="stable")
+def goal_grid(scene: Scene, side: int = GOAL_GRID) -> FloatArray:
+    """(n, 2) [m], world: `side` by `side` points on a grid that fills the goal rectangle, its centre first."""
+    steps = np.linspace(-0.5, 0.5, side)
+    offsets = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    nearest_first = np.argsort(np.hypot(*(offsets * scene.goal.size).T), kind="stable")
     return np.asarray(scene.goal.position + offsets[nearest_first] * scene.goal.size)
 
 
@@ -135,15 +136,6 @@ class _Walls:
         boxes = self._boxes + rho[:, None] * np.array([-1.0, -1.0, 1.0, 1.0])
         starts = np.tile(start, (len(ends), 1))
         return np.asarray(segments_free(starts, ends, self._starts, self._first, rho, boxes))
-
-
-def point_segment_distances(points: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
-    """(n, m) [m]: the distance of each of n points to each of m segments."""
-    along = ends - starts
-    squares = np.maximum((along**2).sum(axis=1), np.finfo(np.float64).tiny)
-    offsets = points[:, None] - starts
-    t = np.clip((offsets * along).sum(axis=2) / squares, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(offsets - t[..., None] * along, axis=2))
 
 
 def _widest(scene: Scene, places: _Places) -> float:

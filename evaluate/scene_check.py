@@ -13,6 +13,7 @@ from converter.preview.playback import play_back
 from converter.preview.report import Approach, Push, SceneReport
 from converter.scene import Body, Scene
 from converter.shape import FloatArray
+from evaluate.passage import goal_grid
 from pcg.errors import InputError
 from planner.contact_curve import ContactCurve
 from planner.problem import Problem
@@ -96,10 +97,7 @@ class _Surveyor:
 
     def _goal_centre_first(self) -> FloatArray:
         """The place (1, 2) [m] in the goal nearest to its centre that the agent can reach, on a grid; or none."""
-        goal = self.scene.goal
-        offsets = np.linspace(-0.5, 0.5, _GOAL_GRID)
-        grid = np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2) * goal.size
-        places = goal.position + grid[np.argsort(np.hypot(*grid.T), kind="stable")]
+        places = goal_grid(self.scene, _GOAL_GRID)
         return places[self.tree.reaches(places)][:1]
 
     def _shortest(self, places: FloatArray) -> FloatArray | None:

@@ -1,8 +1,8 @@
 """The path bound by sampling: RRT-Connect between the switches of a sequence, with exact collision tests.
 
 A deviation from MBTS as published, whose trajectories come from an optimiser. What passes this bound is a plan without
-violations: grasps must touch, and every motion is free up to the scene's tolerance. The
-setting `motion` puts another motion planner in the place of RRT-Connect.
+violations: grasps must touch, and every motion is free up to the scene's tolerance. The setting `motion` puts another
+motion planner in the place of RRT-Connect.
 """
 
 from collections import Counter

@@ -36,13 +36,13 @@ class MbtsSettings:
     mbts_noise: float = 0.01
     mbts_action_cost: float = 0.1
     mbts_max_iterations: int = 100
-    mbts_acceleration_weight: float = 1.0
-    mbts_velocity_weight: float = 0.1
-    mbts_homing_weight: float = 0.01
-    mbts_switch_weight: float = 0.01
-    mbts_touch_scale: float = 100.0
-    mbts_placement_scale: float = 10.0
-    mbts_collision_scale: float = 10.0
+    mbts_acceleration_weight: float = Weights.acceleration
+    mbts_velocity_weight: float = Weights.velocity
+    mbts_homing_weight: float = Weights.homing
+    mbts_switch_weight: float = Weights.switch
+    mbts_touch_scale: float = Weights.touch
+    mbts_placement_scale: float = Weights.placement
+    mbts_collision_scale: float = Weights.collision
 
     @property
     def mbts_weights(self) -> Weights:

@@ -26,20 +26,7 @@ import numpy as np
 
 from converter.shape import FloatArray
 from planner.configuration_space import ObstacleSet
-from planner.lgp_constraints import MARGIN, TOUCH_GAP, PolygonBlock, clearances, signed_distance, touch_gap
-
-__all__ = [
-    "MARGIN",
-    "TOUCH_GAP",
-    "PolygonBlock",
-    "SwitchProgram",
-    "SwitchQuery",
-    "SwitchStructure",
-    "build",
-    "clearances",
-    "signed_distance",
-    "solver",
-]
+from planner.lgp_constraints import MARGIN, TOUCH_GAP, PolygonBlock, clearances, touch_gap
 
 _SQP_OPTIONS: dict[str, Any] = {
     "expand": True,

@@ -38,6 +38,7 @@ HOMES = {
         "pcg/learning_curve.py",
     },
     "numba": {
+        "pcg/episode_kernel.py",
         "pcg/random_kernel.py",
         "pcg/reward.py",
         "pcg/scalar_kernel.py",

@@ -24,6 +24,7 @@ import numpy as np
 from converter.formats.body_document import short
 from converter.formats.safe_names import safe_names
 from converter.outline import outline_polygon, rectangle_of
+from converter.render_scene import object_color
 from converter.scene import Body, Scene
 from converter.shape import FloatArray, Part, denoised
 from converter.theme import PAPER, Color
@@ -105,11 +106,11 @@ def mjcf_text(scene: Scene, movable: Movable = Movable.FREE) -> str:
     _add_room(world, scene)
     for name, wall in zip(names.walls, scene.walls, strict=True):
         _add_geoms(_add_body(world, name, wall), wall, "wall", _color(wall.color or PAPER.wall), meshes)
-    for name, body, color in zip(names.objects, scene.objects, _object_colors(scene), strict=True):
+    for name, body in zip(names.objects, scene.objects, strict=True):
         element = _add_body(world, name, body, **({"mocap": "true"} if movable is Movable.MOCAP else {}))
         if movable is Movable.FREE:
             _add(element, "freejoint", name=name)
-        _add_geoms(element, body, "object", color, meshes)
+        _add_geoms(element, body, "object", _color(object_color(scene, body, PAPER)), meshes)
     _add_agent(root, world, scene)
     if movable is Movable.FREE:
         _add_grasps(root, names.objects)
@@ -211,14 +212,6 @@ def _add_grasps(root: ET.Element, objects: Sequence[str]) -> None:
 
 def _add(parent: ET.Element, tag: str, group: Mapping[str, str] | None = None, **attributes: str) -> ET.Element:
     return ET.SubElement(parent, tag, {**(group or {}), **attributes})
-
-
-def _object_colors(scene: Scene) -> list[str]:
-    """The objects' own colours, or those of the pictures."""
-    others = [body.name for body in scene.objects if body.name != scene.goal.object]
-    defaults = {name: PAPER.obstacles[i % len(PAPER.obstacles)] for i, name in enumerate(others)}
-    defaults[scene.goal.object] = PAPER.goal_object
-    return [_color(body.color or defaults[body.name]) for body in scene.objects]
 
 
 def _color(color: Color) -> str:

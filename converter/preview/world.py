@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from converter.scene import NUMERIC_SLACK, Body, Scene
+from converter.scene import Body, Scene, heights_meet
 from converter.shape import FloatArray, Part, rotation
 
 AGENT = "agent"
@@ -166,11 +166,6 @@ class World:
     def _ignore_other_heights(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
         first, second = arbiter.shapes
         arbiter.process_collision = self.owner[first].meets_in_height(self.owner[second])
-
-
-def heights_meet(first: tuple[float, float], second: tuple[float, float]) -> bool:
-    """Whether two height intervals [m] overlap by more than rounding."""
-    return min(first[1], second[1]) - max(first[0], second[0]) > NUMERIC_SLACK
 
 
 def shape_of(frame: pymunk.Body, core: FloatArray, radius: float) -> pymunk.Shape:

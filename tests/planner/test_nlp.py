@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from converter.scene import Body, Scene
 from converter.shape import FloatArray, Part
-from planner import nlp
 from planner.configuration_space import ObstacleSet
-from planner.nlp import MARGIN, TOUCH_GAP, PolygonBlock, SwitchQuery, SwitchStructure, build, signed_distance, solver
+from planner.lgp_constraints import MARGIN, TOUCH_GAP, PolygonBlock, signed_distance
+from planner.nlp import SwitchQuery, SwitchStructure, build, solver
 from planner.pick_place import Region
 from planner.problem import Problem
 from tests.planner.plain_geometry import clearance, points, polygons
@@ -235,7 +235,7 @@ def test_the_cost_is_the_distance_from_the_start():
     """Of two feasible starts each is its own solution."""
     query = query_of(room())
     for angle in (0.3, 2.0):
-        grasp = query.position + (RADIUS + 0.1 + nlp.TOUCH_GAP) * np.array([np.sign(np.cos(angle)), 0.0])
+        grasp = query.position + (RADIUS + 0.1 + TOUCH_GAP) * np.array([np.sign(np.cos(angle)), 0.0])
         start = np.concatenate([grasp, [1.45, 1.55]])
         ((found, placement),) = query.solve([start])
         np.testing.assert_allclose([*found, *placement], start, atol=1e-6)
