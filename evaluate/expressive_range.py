@@ -49,6 +49,8 @@ def expressive_range_figure(level_sets: Mapping[str, Sequence[ManifestEntry]]) -
                 axis.set_major_locator(MaxNLocator(integer=True, nbins=6))
         for ax in axes.flat[len(points) :]:
             ax.set_visible(False)
+        for ax in axes.flat[max(0, len(points) - columns) : len(points)]:
+            ax.tick_params(labelbottom=True)
         scale = figure.colorbar(mesh, ax=axes, format=PercentFormatter(1.0, decimals=0))
         scale.set_label("share of the levels")
         figure.supxlabel("walls", fontsize=7)
