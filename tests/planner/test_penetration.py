@@ -133,3 +133,55 @@ def test_gap_of_discs_and_boxes():
     assert agent.gap(box("b", 0, 0)) == pytest.approx(0.1)
     assert agent.at(np.array([0.3, 0.0])).gap(box("b", 0, 0)) == pytest.approx(-0.1)
     assert agent.gap(box("b", 0, 0, z=1.0)) == np.inf
+
+
+def test_each_of_several_obstacles_is_measured_by_its_own_radius():
+    """Beside a sharp box a round post is met where only its own radius reaches, each under its own name."""
+    post = prism("post", Part(np.zeros((1, 2)), 0.3), np.array([1.0, 0.0]))
+    compound = Prism.of_body(Body("pair", np.array([-1.0, 0.0, 0.1]), 0.2, (Part.box((0.4, 0.4)),) * 2))
+    agent = Prism.of_agent(Agent(np.array([0.5, 0.0]), 0.25))
+    path = np.array([[0.5, 0.0], [-0.6, 0.0]])
+    found = deepest_contacts(agent, path, [compound, post, box("far", 0, 2)], 0.01)
+    assert {name: contact.depth for name, contact in found.items()} == pytest.approx({"pair": 0.05, "post": 0.05})
+    assert found["post"].where == pytest.approx([1.0, 0.0])
+    assert found["pair"].where == pytest.approx([-0.8, 0.0])
+
+
+@pytest.mark.parametrize("x", [0.55, 0.15])
+def test_allowed_depth_does_not_count(x: float):
+    """A depth is left out if it is allowed, whether the cores are apart or intersect, and else reported whole."""
+    agent = Prism.of_agent(Agent(np.array([0.0, 0.0]), 0.4))
+    path, overlap = np.array([[x, 0.0]]), 0.4 + 0.2 - x
+    assert deepest_contacts(agent, path, [box("b", 0, 0)], overlap + 1e-6) == {}
+    assert deepest_contacts(agent, path, [box("b", 0, 0)], overlap - 1e-6)["b"].depth == pytest.approx(overlap)
+
+
+def test_concentric_discs():
+    """Two points have no normals to separate them: the depth is the sum of the radii."""
+    post = prism("post", Part(np.zeros((1, 2)), 0.3), np.array([1.0, 0.0]))
+    assert depth(Prism.of_agent(Agent(np.zeros(2), 0.2)), [[1.0, 0.0]], post) == pytest.approx(0.5)
+    assert depth(Prism.of_agent(Agent(np.zeros(2), 0.2)), [[0.0, 0.0], [2.0, 0.0]], post) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.6, 1.0])
+def test_the_deepest_place_along_a_piece_is_exact(share: float):
+    """A disc crosses a triangle at a height where its sides slope alike: it is deepest half-way, by a known depth."""
+    triangle = prism("triangle", Part(np.array([[-0.5, 0.0], [0.5, 0.0], [0.0, 0.5]]), 0.0), np.zeros(2))
+    agent = Prism.of_agent(Agent(np.zeros(2), 0.1))
+    height = 0.5 - 0.5 * share
+    # In the middle the two sides are (0.5 - height) / sqrt(2) away, the base is at height.
+    expected = 0.1 + max(0.0, min(height, (0.5 - height) / np.sqrt(2)))
+    assert depth(agent, [[-1.0, height], [1.0, height]], triangle) == pytest.approx(expected, abs=1e-12)
+    assert depth(agent, [[-1.0, height], [0.0, height]], triangle) == pytest.approx(expected, abs=1e-12)
+    assert depth(agent, [[0.0, height], [1.0, height]], triangle) == pytest.approx(expected, abs=1e-12)
+    assert depth(agent, [[0.0, height]], triangle) == pytest.approx(expected, abs=1e-12)
+
+
+def test_gap_to_the_nearest_part():
+    """Of several parts with their own radii the nearest outline decides."""
+    parts = (Part(np.array([[0.0, 0.0]]), 0.3), Part(np.array([[1.0, 0.0]]), 0.1))
+    pair = Prism.of_body(Body("pair", np.array([0.0, 0.0, 0.1]), 0.2, parts))
+    agent = Prism.of_agent(Agent(np.array([1.5, 0.0]), 0.2))
+    assert agent.gap(pair) == pytest.approx(0.2)
+    assert pair.gap(agent) == pytest.approx(0.2)
+    assert agent.at(np.array([-0.6, 0.0])).gap(pair) == pytest.approx(0.1)

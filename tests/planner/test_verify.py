@@ -339,6 +339,7 @@ def test_invalid_start():
     violation = only(scene)
     assert (violation.kind, violation.segment) == (ViolationKind.COLLISION, None)
     assert violation.amount == pytest.approx(0.1)
+    assert violation.message == "a penetrates block by 0.1 m"
     assert kinds(room(objects=[body("obj", 1, 1), body("a", 1.2, 1.2)])) == {"collision"}
     assert kinds(room(objects=[body("obj", 1, 1), body("a", 0.3, 0)])) == {"collision"}
 
@@ -358,11 +359,11 @@ def test_subgoals_that_the_carries_do_not_make(subgoals: list[tuple[str, float, 
     assert [(v.kind, v.amount) for v in violations] == [(ViolationKind.SUBGOAL_MISMATCH, amount)]
 
 
-def test_object_above_the_floor_is_not_placed():
-    """A goal-object that hovers does not rest in the goal."""
-    scene = room(objects=[body("obj", 1, 1, z=0.15)])
-    violation = only(scene)
-    assert violation.kind is ViolationKind.GOAL_MISSED
+@pytest.mark.parametrize("z", [0.15, 0.05])
+def test_object_above_or_below_the_floor_is_not_placed(z: float):
+    """A goal-object that hovers or is sunk into the floor does not rest in the goal."""
+    violation = only(room(objects=[body("obj", 1, 1, z=z)]))
+    assert (violation.kind, violation.where) == (ViolationKind.GOAL_MISSED, (1, 1))
     assert violation.amount == pytest.approx(0.05)
 
 
@@ -371,6 +372,55 @@ def test_each_pair_is_reported_once_a_segment():
     scene = room(body("block", -1, 0))
     violation = only(scene, move((0, 0), (-0.7, 0), (-0.8, 0), (-0.75, 0), (0.65, 0)), GOOD[1])
     assert violation.amount == pytest.approx(0.15)
+
+
+def test_where_and_when_a_plan_fails():
+    """Every violation of a single segment names it and the place; those of a placement name the carry's."""
+    drive, far = move((0, 0), (0.6, 0)), carry("obj", (0.6, 0), (0.6, 1))
+    assert _place(only(room(), drive, far)) == ("no_touch", 1, (0.6, 0))
+    assert _place(only(room(), move((0, 0), (0.65, 0)), carry("box", (0.65, 0)))) == ("unknown_object", 1, (0.65, 0))
+    assert _place(only(room(), move((0, 0.2), (0.65, 0)), GOOD[1])) == ("discontinuity", 0, (0, 0.2))
+    assert _place(only(room(), GOOD[0], carry("obj", (0.65, 0), (0.65, 0.8)))) == ("goal_missed", None, (1.0, 0.8))
+    claimed = [Subgoal("obj", np.array([1.0, 0.99]))]
+    assert [_place(v) for v in verify(room(), plan_of(room(), *GOOD, subgoals=claimed))] == [
+        ("subgoal_mismatch", 1, (1.0, 1.0))
+    ]
+
+
+def _place(violation: Violation) -> tuple[str, int | None, object]:
+    return violation.kind.value, violation.segment, pytest.approx(violation.where)
+
+
+def test_what_the_agent_pushes_ahead_is_carried():
+    """An object that is carried forward gives way: the agent may go where it was."""
+    ahead = carry("obj", (0.65, 0), (1.0, 0), (1.0, 1.0), (0.65, 1.0))
+    assert kinds(room(), GOOD[0], ahead) == set()
+
+
+def test_a_micrometre_is_touch_two_are_none():
+    """Gaps and placements have a micrometre of slack, beyond the tolerance for the former."""
+    for slack, expected in ((0.9e-6, set()), (1.1e-6, {"no_touch"})):
+        x = 0.65 - 1e-3 - slack
+        assert kinds(room(), move((0, 0), (x, 0)), carry("obj", (x, 0), (x, 1))) == expected
+    for slack, expected in ((0.9e-6, set()), (1.1e-6, {"subgoal_mismatch"})):
+        assert kinds(room(), *GOOD, subgoals=[Subgoal("obj", np.array([1.0 + slack, 1.0]))]) == expected
+    for slack, expected in ((0.9e-6, set()), (1.1e-6, {"goal_missed"})):
+        assert kinds(room(objects=[body("obj", 1, 1, z=0.1 + slack)])) == expected
+
+
+@pytest.mark.parametrize(("x", "y"), [(0.89, 1), (1.11, 1), (1, 0.89), (1, 1.11)])
+def test_every_side_of_the_goal_counts(x: float, y: float):
+    """The goal rectangle ends on all four sides."""
+    violation = only(room(objects=[body("obj", x, y)]))
+    assert (violation.kind, violation.amount) == (ViolationKind.GOAL_MISSED, pytest.approx(0.01))
+
+
+@pytest.mark.parametrize(("x", "y"), [(-2.1, 0.0), (2.1, 0.0), (0.0, -2.1), (0.0, 2.1)])
+def test_every_side_of_the_bounds_counts(x: float, y: float):
+    """The bounds end on all four sides."""
+    violation = only(replace(room(objects=[body("obj", 1, 1)]), walls=()), move((0, 0), (x, y)))
+    assert (violation.kind, violation.amount) == (ViolationKind.OUT_OF_BOUNDS, pytest.approx(0.1))
+    assert violation.where == (x, y)
 
 
 def test_plan_of_another_scene():
@@ -383,8 +433,12 @@ def test_plan_of_another_scene():
         require_same_scene(room(body("block", -1, 0)), plan, "p.json")
     with pytest.raises(InputError, match=r"tolerance 0\.001 m, but the scene has 0\.0001 m; pass --tolerance 0\.001 "):
         require_same_scene(replace(scene, tolerance=1e-4), plan)
-    with pytest.raises(InputError, match="plan of another scene"):
-        require_same_scene(room(body("block", -1, 0)), replace(plan, tolerance=-1.0))
+    exact = plan_of(room(tolerance=0.0), *GOOD)
+    with pytest.raises(InputError, match=r"^plan: made with tolerance 0\.0 m"):
+        require_same_scene(scene, exact)
+    for tolerance in (-1.0, np.inf, np.nan):
+        with pytest.raises(InputError, match=r"^plan: plan of another scene"):
+            require_same_scene(room(body("block", -1, 0)), replace(plan, tolerance=tolerance))
 
 
 places = st.tuples(*[st.floats(-1.9, 1.9).map(lambda x: round(x, 2))] * 2)
