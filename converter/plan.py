@@ -10,19 +10,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from converter.formats import scene_yaml
-from converter.formats.body_document import Number
+from converter.formats.body_document import Name, Number, Text
 from converter.polyline import path_length
 from converter.scene import Scene
 from converter.shape import FloatArray, frozen_array
+from pcg import json_text
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
-from pcg.validation import Document, validated
+from pcg.validation import Document, PlainText, PlainValues, validated
+
+MAX_SEGMENTS = 10_000
+"""Segments, and subgoals, of a plan's file."""
 
 
 class Status(StrEnum):
@@ -158,7 +162,7 @@ def plan_document(plan: Plan) -> dict[str, Any]:
 class SubgoalDocument(Document):
     """A placement: `object` rests with its centre at `position`."""
 
-    object: str
+    object: Name
     position: tuple[Number, Number]
 
 
@@ -166,7 +170,7 @@ class SegmentDocument(Document):
     """A piece of motion: agent centres joined by straight lines; in a `carry` the agent holds `object`."""
 
     mode: Literal["move", "carry"]
-    object: str | None = None
+    object: Name | None = None
     path: list[tuple[Number, Number]]
 
 
@@ -174,20 +178,20 @@ class PlanDocument(Document):
     """The outcome of one planning attempt; lengths in metres, times in seconds."""
 
     format: Literal[1]
-    scene: str
-    scene_hash: str
-    method: str
+    scene: Text
+    scene_hash: Text
+    method: Text
     seed: int
     status: Status
     time_s: float
-    settings: dict[str, Any] = Field(default_factory=dict)
+    settings: PlainValues = Field(default_factory=dict)
     preset: str | None = None
     tolerance: float
-    certificate: str | None = None
-    counters: dict[str, float] = Field(default_factory=dict)
+    certificate: PlainText | None = None
+    counters: dict[PlainText, float] = Field(default_factory=dict)
     cost: dict[str, float] | None = None
-    subgoals: list[SubgoalDocument] = Field(default_factory=list)
-    segments: list[SegmentDocument] = Field(default_factory=list)
+    subgoals: Annotated[list[SubgoalDocument], Field(max_length=MAX_SEGMENTS)] = Field(default_factory=list)
+    segments: Annotated[list[SegmentDocument], Field(max_length=MAX_SEGMENTS)] = Field(default_factory=list)
     scene_data: dict[str, Any] | None = None
 
 
@@ -197,13 +201,7 @@ def read_plan(path: Path) -> Plan:
     Raises:
         InputError: naming file, field and reason.
     """
-    try:
-        data = json.loads(read_text(path))
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(str(path), f"not a JSON file: {error}") from None
-    return plan_from_document(data, str(path))
+    return plan_from_document(json_text.parse(read_text(path), str(path)), str(path))
 
 
 def plan_from_document(data: Any, where: str) -> Plan:

@@ -31,6 +31,7 @@ COMMANDS = {
     "render": "Draw levels, scenes and plans.",
     "export": "Export plans as tables over time or as PDDL.",
     "demonstrate": "Write down where a person would put the objects.",
+    "space": "Draw free space, grasps and shortest paths.",
     "subgoals": "Draw the subgoals that a method proposes.",
     "tree": "Draw the search tree of a method.",
     "study": "Solve many scenes with many methods and seeds.",
@@ -81,6 +82,8 @@ class _Commands(typer.core.TyperGroup):
             # Python flushes stdout once more at its end, which would fail again.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(BROKEN_PIPE)
+        except MemoryError as error:
+            _fail(f"not enough memory: {error}".removesuffix(": "))
         except OSError as error:
             _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
         sys.exit(status)
@@ -94,7 +97,9 @@ class _Commands(typer.core.TyperGroup):
 
 
 def _fail(message: str) -> NoReturn:
-    typer.echo(f"error: {' '.join(message.split())}", err=True)
+    from pcg.printable import one_line  # noqa: PLC0415 - as above
+
+    typer.echo(f"error: {one_line(message)}", err=True)
     sys.exit(BAD_INPUT)
 
 

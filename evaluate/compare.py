@@ -2,21 +2,27 @@
 
 import json
 import statistics
-import zlib
 from dataclasses import dataclass, field, replace
+from typing import Any
 
+from evaluate.packed import unpacked
 from evaluate.store import StoredTrials, TrialRow
+from pcg import json_text
 
 
 def without_times(row: TrialRow) -> TrialRow:
-    """The row without what a seed does not fix: times, machine and versions; the plan uncompressed likewise."""
-    plan = None
+    """The row without what a seed does not fix: times, machine and versions; the plan uncompressed likewise.
+
+    Raises:
+        InputError: what is stored is damaged.
+    """
+    plan, where = None, f"trial {row.key}"
     if row.plan is not None:
-        document = json.loads(zlib.decompress(row.plan))
+        document = unpacked(row.plan, where)
         document["time_s"] = 0.0
-        document["counters"] = _counted(document["counters"])
+        document["counters"] = _counted(document.get("counters"), where)
         plan = json.dumps(document, sort_keys=True).encode()
-    counters = json.dumps(_counted(json.loads(row.counters)), sort_keys=True)
+    counters = json.dumps(_counted(json_text.parse(row.counters, where), where), sort_keys=True)
     return replace(row, time_s=0.0, counters=counters, plan=plan, versions="", machine="", started="", finished="")
 
 
@@ -25,9 +31,10 @@ def same_plan(one: TrialRow, other: TrialRow) -> bool:
     return one.plan == other.plan or without_times(one).plan == without_times(other).plan
 
 
-def _counted(counters: dict[str, float]) -> dict[str, float]:
+def _counted(counters: Any, where: str) -> dict[str, Any]:
     """Counters without times, whose names end in `_s`."""
-    return {name: value for name, value in counters.items() if not name.endswith("_s")}
+    found = json_text.require_object(counters, f"{where}: counters")
+    return {name: value for name, value in found.items() if not name.endswith("_s")}
 
 
 @dataclass

@@ -8,12 +8,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from converter.formats.body_document import Name
 from evaluate.method import ImportedPlanner, Method, OwnPlanner, Planner
 from evaluate.program import Program
 from evaluate.references import HEURISTICS, PLANNERS, SUBGOALS, Reference
 from evaluate.setting_values import changed
 from pcg.errors import InputError
-from pcg.validation import Document
+from pcg.printable import printable
+from pcg.validation import Document, PlainValues
 from planner import METHODS, Settings, settings_for
 
 MAX_GRID = 10_000
@@ -44,12 +46,12 @@ class MethodDocument(Document):
     method: str | None = None
     planner: str | None = None
     command: Annotated[list[str], Field(min_length=1)] | None = None
-    name: Annotated[str, Field(min_length=1, max_length=100)] | None = None
+    name: Annotated[Name, Field(max_length=100)] | None = None
     subgoals: str | None = None
     heuristic: str | None = None
     settings: Literal["fast", "faithful"] | None = None
     set_: dict[str, Scalar] = Field(default_factory=dict, alias="set")
-    options: dict[str, Any] = Field(default_factory=dict)
+    options: PlainValues = Field(default_factory=dict)
     sweep: dict[str, Annotated[list[Scalar], Field(min_length=1)]] = Field(default_factory=dict)
 
     @model_validator(mode="before")
@@ -101,7 +103,7 @@ def methods_of(document: MethodDocument, shared: Shared, where: str) -> Iterator
     for point in itertools.product(*document.sweep.values()):
         chosen = dict(zip(document.sweep, point, strict=True))
         tail = ",".join(f"{key}={value}" for key, value in chosen.items())
-        yield _method(document, f"{base}[{tail}]" if tail else base, chosen, shared, where)
+        yield _method(document, printable(f"{base}[{tail}]" if tail else base), chosen, shared, where)
 
 
 def _method(document: MethodDocument, name: str, chosen: Mapping[str, Any], shared: Shared, where: str) -> Method:

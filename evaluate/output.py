@@ -13,8 +13,9 @@ from rich.table import Table
 from rich.text import Text
 
 from evaluate.number_text import three_digits
+from pcg.printable import printable
 
-__all__ = ["Progress", "log", "print_json", "print_line", "print_table", "progress"]
+__all__ = ["Progress", "counted", "log", "print_json", "print_line", "print_table", "progress"]
 
 PIPE_WIDTH = 10_000
 """Line width where no terminal limits it, so that no table is cut."""
@@ -40,12 +41,17 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], title:
 
 def print_line(text: str) -> None:
     """Prints a line of results for people."""
-    sys.stdout.write(text + "\n")
+    sys.stdout.write(printable(text) + "\n")
+
+
+def counted(number: int, thing: str) -> str:
+    """A number of things: `1 level`, `2 levels`."""
+    return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
 def log(text: str) -> None:
     """Prints a line on stderr."""
-    sys.stderr.write(text + "\n")
+    sys.stderr.write(printable(text) + "\n")
 
 
 def progress(*extra: str) -> Progress:
@@ -88,4 +94,4 @@ def _cell(value: object) -> str:
         return "-"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return three_digits(value) if isinstance(value, float) else str(value)
+    return three_digits(value) if isinstance(value, float) else printable(str(value))

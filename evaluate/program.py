@@ -35,24 +35,25 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any, Literal
+from typing import IO, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from converter.formats import scene_yaml
 from converter.formats.body_document import Number
-from converter.plan import Plan, Segment, Status
+from converter.plan import MAX_SEGMENTS, Plan, Segment, Status
 from converter.scene import Scene
 from evaluate.placements import with_placements
+from pcg import json_text
 from pcg.errors import InputError
-from pcg.validation import Document, validated
+from pcg.validation import Document, PlainText, validated
 from planner import Settings
 
 GRACE_S = 0.5
 """How long after its time limit a program may still end by itself [s]: what counts the limit is not always precise."""
 
-MAX_ANSWER_BYTES = 64 << 20
+MAX_ANSWER_BYTES = 16 << 20
 QUOTED_BYTES = 300
 """How much of the end of its stderr is quoted of a program that failed."""
 
@@ -63,16 +64,16 @@ class ProgramError(RuntimeError):
 
 class _Segment(Document):
     mode: Literal["move", "carry"]
-    object: str | None = None
+    object: PlainText | None = None
     path: list[tuple[Number, Number]]
 
 
 class _Answer(Document):
     format: Literal[1] = 1
     status: Status
-    segments: list[_Segment] = Field(default_factory=list)
-    certificate: str | None = None
-    counters: dict[str, float] = Field(default_factory=dict)
+    segments: Annotated[list[_Segment], Field(max_length=MAX_SEGMENTS)] = Field(default_factory=list)
+    certificate: PlainText | None = None
+    counters: dict[PlainText, float] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,11 +184,9 @@ class _Exchange:
         if path.stat().st_size > MAX_ANSWER_BYTES:
             raise ProgramError(f"{where}: larger than {MAX_ANSWER_BYTES >> 20} MiB")
         try:
-            return validated(_Answer, json.loads(path.read_bytes()), where)
+            return validated(_Answer, json_text.parse(path.read_bytes(), where), where)
         except InputError as error:
             raise ProgramError(str(error)) from None
-        except (ValueError, RecursionError) as error:
-            raise ProgramError(f"{where}: not a JSON document: {error}") from None
 
 
 def _plan(answer: _Answer, scene: Scene, seed: int, time_s: float) -> Plan:

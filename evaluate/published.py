@@ -22,7 +22,7 @@ from pcg.files import read_text
 
 TIME_COLUMNS = ("scene", "method", "mean_s", "std_s", "solved_percent", "mean_s_without_subgoal_computation")
 SUCCESS_COLUMNS = ("group", "method", "scenes", "solved_percent")
-MAX_BYTES = 10_000_000
+MAX_BYTES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -94,17 +94,23 @@ def success_by_occlusion() -> dict[tuple[str, str], float]:
 
 def _rows(path: Path, columns: tuple[str, ...]) -> Iterator[tuple[str, dict[str, str]]]:
     """Where a row stands, and its values by column."""
-    if path.is_file() and path.stat().st_size > MAX_BYTES:
-        raise InputError(str(path), f"larger than {MAX_BYTES // 1_000_000} MB, the most that a table may have")
-    numbered = enumerate(read_text(path).splitlines(), start=1)
+    numbered = enumerate(read_text(path, MAX_BYTES).splitlines(), start=1)
     lines = [(number, line) for number, line in numbered if line.strip() and not line.startswith("#")]
-    if not lines or tuple(next(csv.reader([lines[0][1]]))) != columns:
+    if not lines or tuple(_values(lines[0][1], str(path))) != columns:
         raise InputError(str(path), f"the first line has to be {','.join(columns)}")
     for number, line in lines[1:]:
-        where, values = f"{path}: line {number}", next(csv.reader([line]))
+        where = f"{path}: line {number}"
+        values = _values(line, where)
         if len(values) != len(columns):
             raise InputError(where, f"found {len(values)} values, allowed are {len(columns)}")
         yield where, dict(zip(columns, values, strict=True))
+
+
+def _values(line: str, where: str) -> list[str]:
+    try:
+        return next(csv.reader([line]))
+    except csv.Error as error:
+        raise InputError(where, f"not a line of a CSV file: {error}") from None
 
 
 def _number(where: str, row: dict[str, str], column: str) -> float | None:

@@ -4,11 +4,11 @@ import functools
 import importlib.metadata
 import json
 import platform
-import zlib
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from converter.plan import Plan, Status, plan_document, plan_from_document
+from evaluate.packed import packed, unpacked
 from evaluate.store import TrialRow
 from evaluate.trial import Trial, TrialOutcome
 from evaluate.workers import Failure
@@ -31,7 +31,7 @@ def run_recorded(trial: Trial) -> TrialRow:
         pick_places=plan.pick_places if plan.solved else None,
         counters=json.dumps(dict(plan.counters)),
         message=_message(outcome),
-        plan=zlib.compress(json.dumps(plan_document(plan)).encode()) if plan.solved else None,
+        plan=packed(plan_document(plan)) if plan.solved else None,
         started=started,
         finished=datetime.now(UTC),
     )
@@ -63,7 +63,8 @@ def plan_of(row: TrialRow) -> Plan | None:
     """
     if row.plan is None:
         return None
-    return plan_from_document(json.loads(zlib.decompress(row.plan)), f"{row.scene}-{row.method}-{row.seed}")
+    where = f"{row.scene}-{row.method}-{row.seed}"
+    return plan_from_document(unpacked(row.plan, where), where)
 
 
 def _row(

@@ -4,10 +4,10 @@ Numbers are aggregated in data frames, scenes pass one at a time, so memory grow
 the page shows, not with plans.
 """
 
-import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -25,6 +25,7 @@ from evaluate.tables_methods import comparison_table, methods_table
 from evaluate.tables_scenes import facts_table, plans_table, times_table
 from evaluate.tables_success import success_table
 from evaluate.trial_frame import names_in, read_trials, reading
+from pcg import json_text
 
 
 @dataclass(frozen=True)
@@ -174,5 +175,10 @@ def _provenance(folder: Path) -> Provenance:
         str(started)[:16].replace("T", " "),
         str(finished)[:16].replace("T", " "),
         tuple(machines),
-        tuple(", ".join(f"{name} {version}" for name, version in json.loads(text).items()) for text in versions),
+        tuple(", ".join(f"{name} {version}" for name, version in _versions(text, folder).items()) for text in versions),
     )
+
+
+def _versions(text: str, folder: Path) -> dict[str, Any]:
+    where = f"{folder}: versions"
+    return json_text.require_object(json_text.parse(text, where), where)

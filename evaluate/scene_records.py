@@ -2,7 +2,6 @@
 
 import json
 import sqlite3
-import zlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -13,8 +12,10 @@ import polars as pl
 from converter.formats import scene_yaml
 from converter.plan import Plan, plan_from_document
 from converter.scene import Scene
+from evaluate.packed import unpacked
 from evaluate.scene_statistics import SceneStatistics, geometry_statistics_of, is_monotone
 from evaluate.trial_frame import reading
+from pcg import json_text
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
 
@@ -70,21 +71,14 @@ def scene_records(folder: Path, frame: pl.DataFrame) -> Iterator[SceneRecord]:
 
 def _scene(connection: sqlite3.Connection, place: int, where: str) -> Scene:
     name, blob = connection.execute("SELECT name, document FROM scene WHERE rowid = ?", (place,)).fetchone()
-    return scene_yaml.from_document(_unpacked(blob, where), where, name)
+    return scene_yaml.from_document(unpacked(blob, where), where, name)
 
 
 def _plan(connection: sqlite3.Connection, place: int | None, where: str) -> Plan | None:
     found = connection.execute("SELECT plan FROM trial WHERE rowid = ?", (place,)).fetchone()
     if found is None or found[0] is None:
         return None
-    return plan_from_document(_unpacked(found[0], where), where)
-
-
-def _unpacked(blob: bytes, where: str) -> Any:
-    try:
-        return json.loads(zlib.decompress(blob))
-    except (zlib.error, ValueError) as error:
-        raise InputError(where, f"what is stored is damaged: {error}") from None
+    return plan_from_document(unpacked(found[0], where), where)
 
 
 class _Cache:
@@ -112,7 +106,7 @@ class _Cache:
 def _read(path: Path) -> dict[str, SceneStatistics]:
     """What a cache holds; nothing if it is missing, damaged or of another version, for it can be made again."""
     try:
-        document: Any = json.loads(read_text(path))
+        document: Any = json_text.parse(read_text(path), str(path))
         if document["version"] != CACHE_VERSION:
             return {}
         return {hash_: SceneStatistics(**values) for hash_, values in document["scenes"].items()}

@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -28,6 +29,9 @@ from planner.problem import Problem
 
 PresetName = Literal["clear", "published"]
 Presets = Annotated[list[PresetName], Field(min_length=1)]
+
+MAX_FILES = 100_000
+"""Files that a pattern may match."""
 
 _VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)\}")
 
@@ -145,7 +149,12 @@ def _spread(scenes: list[Scene], take: int | None, where: str) -> list[Scene]:
 
 def _matches(pattern: str, folder: Path) -> list[Path]:
     expanded = _expanded(pattern, os.environ)
-    found = sorted(glob.glob(expanded, root_dir=folder, recursive=True))  # noqa: PTH207  # takes absolute patterns
+    if expanded.count("**") > 1:
+        raise InputError("", f"more than one ** in {expanded!r}")
+    matches = glob.iglob(expanded, root_dir=folder, recursive=True)  # noqa: PTH207  # takes absolute patterns
+    found = sorted(islice(matches, MAX_FILES + 1))
+    if len(found) > MAX_FILES:
+        raise InputError("", f"{expanded!r} matches more than {MAX_FILES} files")
     if not found:
         raise InputError("", f"nothing matches {expanded!r} (relative to {folder})")
     return [folder / path for path in found]

@@ -10,6 +10,9 @@ from pydantic import TypeAdapter, ValidationError
 from pcg.errors import InputError
 from planner import Settings
 
+MAX_COUNT = 10_000_000
+"""Largest number of candidates, iterations and the like: memory may grow with it."""
+
 _TYPES: dict[str, Any] = {
     field.name: field.type for field in fields(Settings) if field.name not in ("method", "preset")
 }
@@ -60,4 +63,6 @@ def _value(name: str, value: Any, where: str) -> Any:
         raise InputError(where, f"{name}: {error.errors()[0]['msg']} (found {str(value)[:60]!r})") from None
     if isinstance(found, float) and not math.isfinite(found):
         raise InputError(where, f"{name}: must be finite (found {found})")
+    if isinstance(found, int) and found > MAX_COUNT:
+        raise InputError(where, f"{name}: must be at most {MAX_COUNT} (found {value!s:.60})")
     return found

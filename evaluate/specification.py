@@ -28,12 +28,14 @@ Paths are relative to the file, and may hold `*`, `?` and `**`. `evaluate.scene_
 `evaluate.method_document` about methods.
 """
 
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator
 
 from converter.formats import yaml_text
+from converter.formats.body_document import Name
 from evaluate.method_document import MethodDocument, Shared, methods_of
 from evaluate.names import require_distinct
 from evaluate.scene_source import Presets, Reading, SceneSourceDocument, read_sources
@@ -43,10 +45,11 @@ from pcg.files import read_text
 from pcg.validation import Document, validated
 
 MAX_SEEDS = 1_000_000
+MAX_METHODS = 10_000
 
 
 class _Study(Document):
-    name: Annotated[str, Field(min_length=1, max_length=100)]
+    name: Annotated[Name, Field(max_length=100)]
     scenes: Annotated[list[SceneSourceDocument], Field(min_length=1)]
     methods: Annotated[list[MethodDocument], Field(min_length=1)]
     seeds: Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=1, max_length=MAX_SEEDS)]
@@ -99,11 +102,14 @@ def read_study(path: Path, demonstrations: Path | None = None) -> Study:
     require_distinct([f"{scene.name} {scene.preset}" for scene in found.scenes], f"{path}: scenes")
     folder = path.parent.resolve()
     shared = Shared(spec.settings, _changes(spec, folder, demonstrations), folder)
-    methods = [
+    found_methods = (
         method
         for i, document in enumerate(spec.methods)
         for method in methods_of(document, shared, f"{path}: methods[{i}]")
-    ]
+    )
+    methods = list(islice(found_methods, MAX_METHODS + 1))
+    if len(methods) > MAX_METHODS:
+        raise InputError(str(path), f"methods: more than {MAX_METHODS}, sweeps counted out")
     require_distinct([method.name for method in methods], f"{path}: methods")
     return Study(
         name=spec.name,

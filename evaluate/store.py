@@ -7,22 +7,30 @@ run on, and what the study that last ran in the folder consists of: a folder nee
 
 import contextlib
 import fcntl
-import json
+import math
 import sqlite3
-import zlib
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, astuple, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import IO, Annotated, Any, Self
+
+from pydantic import Field
 
 from converter.formats import scene_yaml
+from converter.formats.body_document import Name
 from converter.scene import Scene
+from evaluate.packed import packed, unpacked
 from pcg.errors import InputError
+from pcg.validation import Document, validated
 
 FILE_NAME = "trials.sqlite"
+LOCK_NAME = ".lock"
 VERSION = 2
 """`PRAGMA user_version` of the database."""
+
+MAX_INTEGER = 2**63 - 1
+"""Of SQLite."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +102,9 @@ _TABLES = {
 }
 """Columns of the tables. A document is JSON, compressed by zlib; `study` has one row."""
 
+_SCHEMA = {("table", name, f"CREATE TABLE {name} ({columns}) STRICT") for name, columns in _TABLES.items()}
+"""What SQLite says that a database consists of. A view or a trigger of somebody else could do anything."""
+
 _INSERT = f"INSERT INTO trial VALUES ({', '.join('?' * len(_COLUMNS))})"  # noqa: S608  # no outside text in it
 
 
@@ -128,6 +139,14 @@ class StudyRecord:
         return frozenset(self.scenes), frozenset(self.methods), frozenset(self.seeds)
 
 
+class _StudyDocument(Document):
+    name: Name
+    scenes: tuple[tuple[str, str], ...]
+    methods: tuple[tuple[str, str], ...]
+    seeds: tuple[Annotated[int, Field(ge=0, le=MAX_INTEGER)], ...]
+    trials: int
+
+
 class StoredTrials:
     """A study's database, open for reading, also while a study writes to it. A context manager."""
 
@@ -144,6 +163,7 @@ class StoredTrials:
             self._connection = sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro", uri=True)
             try:
                 _require_version(self._connection, self._path)
+                _require_tables(self._connection, self._path)
             except BaseException:
                 self._connection.close()
                 raise
@@ -197,27 +217,28 @@ class StoredTrials:
         """
         with self._explained():
             for name, document in self._connection.execute("SELECT name, document FROM scene ORDER BY rowid"):
-                yield scene_yaml.from_document(json.loads(zlib.decompress(document)), f"{self._path}: {name}", name)
+                where = f"{self._path}: {name}"
+                yield scene_yaml.from_document(unpacked(document, where), where, name)
 
     def study(self) -> StudyRecord | None:
-        """The study that last ran in the folder; None if none did."""
+        """The study that last ran in the folder; None if none did.
+
+        Raises:
+            InputError: the file is damaged.
+        """
         with self._explained():
             found = self._connection.execute("SELECT document FROM study").fetchone()
         if found is None:
             return None
-        document = json.loads(zlib.decompress(found[0]))
-        return StudyRecord(
-            name=document["name"],
-            scenes=tuple((name, hash_) for name, hash_ in document["scenes"]),
-            methods=tuple((name, hash_) for name, hash_ in document["methods"]),
-            seeds=tuple(document["seeds"]),
-            trials=document["trials"],
-        )
+        where = f"{self._path}: study"
+        return StudyRecord(**dict(validated(_StudyDocument, unpacked(found[0], where), where)))
 
     def _selected(self, statement: str, *parameters: Any) -> Iterator[TrialRow]:
         with self._explained():
             for values in self._connection.execute(statement, parameters):
                 row = TrialRow(*values)
+                if not (math.isfinite(row.time_s) and math.isfinite(row.path_length_m or 0.0)):
+                    raise InputError(f"{self._path}: trial {row.key}", "time and path length have to be finite")
                 # SQLite has no Booleans.
                 yield row if row.verified is None else replace(row, verified=bool(row.verified))
 
@@ -276,13 +297,13 @@ class TrialStore(StoredTrials):
         Raises:
             InputError: the disk is full or the file cannot be written.
         """
-        document = zlib.compress(json.dumps(asdict(study)).encode())
+        document = packed(asdict(study))
         with self._explained(_UNWRITABLE), self._connection:
             self._connection.execute("INSERT OR REPLACE INTO study VALUES (1, ?)", (document,))
 
 
 def _scene_row(scene: Scene) -> tuple[str, str, bytes]:
-    document = zlib.compress(json.dumps(scene_yaml.to_document(scene)).encode())
+    document = packed(scene_yaml.to_document(scene))
     return scene.name, scene.geometry_hash, document
 
 
@@ -290,6 +311,7 @@ def _opened(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path)
     try:
         _require_version(connection, path)
+        _require_tables(connection, path, may_lack_some=True)
         # With a write-ahead log others can read while this process writes, and a commit does not wait for the disk.
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = NORMAL")
@@ -302,16 +324,30 @@ def _opened(path: Path) -> sqlite3.Connection:
     return connection
 
 
+def _require_tables(connection: sqlite3.Connection, path: Path, *, may_lack_some: bool = False) -> None:
+    found = set(connection.execute("SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL"))
+    if not (found <= _SCHEMA if may_lack_some else found == _SCHEMA):
+        raise InputError(str(path), "not a study's database: it has other tables")
+
+
 def _require_version(connection: sqlite3.Connection, path: Path) -> None:
     (version,) = connection.execute("PRAGMA user_version").fetchone()
     if version not in (0, VERSION):
         raise InputError(str(path), f"a database of version {version}, allowed is {VERSION}")
 
 
+def _require_no_links(folder: Path) -> None:
+    """Refuses links in place of our files: whoever made the folder could point them at files of its reader."""
+    for name in (LOCK_NAME, FILE_NAME, *(f"{FILE_NAME}-{suffix}" for suffix in ("wal", "shm", "journal"))):
+        if (folder / name).is_symlink():
+            raise InputError(str(folder / name), "a symbolic link, which is not followed for writing")
+
+
 def _locked(folder: Path) -> IO[str]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        file = (folder / ".lock").open("w")
+        _require_no_links(folder)
+        file = (folder / LOCK_NAME).open("w")
     except OSError as error:
         raise InputError(str(folder), f"cannot be written: {error.strerror}") from None
     try:

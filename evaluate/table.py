@@ -2,8 +2,11 @@
 
 import csv
 import io
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+
+from pcg.printable import printable
 
 _LATEX = str.maketrans(
     {
@@ -25,6 +28,9 @@ _LATEX = str.maketrans(
         "∞": r"$\infty$",
     }
 )
+
+_NUMBERS = re.compile(r"[-+]?[0-9][-+.0-9 ()%to/]*")
+"""A number, or several such as an estimate and its interval."""
 
 _MARKDOWN = str.maketrans({character: "\\" + character for character in "\\`*_[]<>|~#"})
 
@@ -91,7 +97,7 @@ def as_latex(table: Table) -> str:
         rf"\label{{tab:{table.name}}}",
         rf"\begin{{tabular}}{{l{'r' * (len(table.columns) - 1)}}}",
         r"\toprule",
-        " & ".join(column.translate(_LATEX) for column in table.columns) + r" \\",
+        " & ".join(_plain(column).translate(_LATEX) for column in table.columns) + r" \\",
         r"\midrule",
         *rows,
         r"\bottomrule",
@@ -107,8 +113,8 @@ def as_csv(table: Table) -> str:
     columns, rows = table.data or (table.columns, [[entry.text for entry in row] for row in table.rows])
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(rows)
+    writer.writerow(map(_csv_value, columns))
+    writer.writerows(map(_csv_value, row) for row in rows)
     return file.getvalue()
 
 
@@ -116,8 +122,18 @@ WRITERS: dict[str, Callable[[Table], str]] = {"md": as_markdown, "tex": as_latex
 """The text of a table's file by its suffix."""
 
 
+def _csv_value(value: object) -> object:
+    """The value; text that a spreadsheet would take for a formula gets an apostrophe in front."""
+    is_formula = isinstance(value, str) and value.startswith(("=", "+", "-", "@")) and not _NUMBERS.fullmatch(value)
+    return f"'{value}" if is_formula else value
+
+
+def _plain(text: str) -> str:
+    return printable(" ".join(text.split()))
+
+
 def _markdown_text(text: str) -> str:
-    return " ".join(text.translate(_MARKDOWN).split())
+    return _plain(text).translate(_MARKDOWN)
 
 
 def _markdown_entry(entry: Entry) -> str:
@@ -130,7 +146,7 @@ def _markdown_line(texts: Sequence[str]) -> str:
 
 
 def _latex_entry(entry: Entry) -> str:
-    text = " ".join(entry.text.translate(_LATEX).split())
+    text = _plain(entry.text).translate(_LATEX)
     return rf"\textbf{{{text}}}" if entry.bold and text else text
 
 

@@ -16,6 +16,7 @@ import polars as pl
 
 from evaluate.statistics import FloatArray
 from evaluate.store import FILE_NAME, StoredTrials, StudyRecord
+from pcg import json_text
 from pcg.errors import InputError
 from pcg.files import replacing
 
@@ -79,6 +80,8 @@ def read_trials(folder: Path) -> pl.DataFrame:
         study = store.study()
     frame = pl.concat([pl.DataFrame(schema=schema), *frames])
     frame = frame if study is None else _of_study(frame, study)
+    if not frame.select(pl.col("time_s", "path_length_m", "time_limit").is_finite().all()).row(0) == (True, True, True):
+        raise InputError(str(folder), "times and path lengths have to be finite")
     if frame.is_empty():
         raise InputError(str(folder), "the study holds no trials yet")
     names = pl.DataFrame(labels, schema=["method", "settings_hash", "label"], orient="row")
@@ -175,7 +178,9 @@ def _method_labels(connection: sqlite3.Connection) -> list[tuple[str, str, str]]
     found: dict[str, dict[str, dict[str, Any]]] = {}
     query = "SELECT method, settings_hash, settings FROM trial GROUP BY method, settings_hash ORDER BY min(rowid)"
     for method, hash_, settings in connection.execute(query):
-        found.setdefault(method, {})[hash_] = json.loads(settings)
+        where = f"settings of {method!r}"
+        values = json_text.require_object(json_text.parse(settings, where), where)
+        found.setdefault(method, {})[hash_] = values
     return [
         (method, hash_, _label(method, hash_, settings, variants.values()))
         for method, variants in found.items()

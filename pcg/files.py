@@ -1,6 +1,7 @@
 """Reading and writing files: clear errors for what cannot be read, no half-written files."""
 
 import contextlib
+import itertools
 import os
 import tempfile
 from collections.abc import Iterator
@@ -8,21 +9,88 @@ from pathlib import Path
 
 from pcg.errors import InputError
 
+MAX_BYTES = 20_000_000
+"""Of a file, unless its reader says otherwise."""
 
-def read_text(path: Path) -> str:
+MAX_LINES, MAX_LINE_BYTES = 1_000_000, 1_000_000
+"""Lines, and bytes of a line, where lines are read one by one."""
+
+
+def read_bytes(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
+    """What a file holds.
+
+    No more than that is ever read, so pipes and devices may be read too.
+
+    Raises:
+        InputError: the file is missing, is a folder, may not be read or is larger.
+    """
+    with _explained(path), path.open("rb") as file:
+        data = file.read(max_bytes + 1)
+    if len(data) > max_bytes:
+        raise InputError(str(path), f"larger than {max_bytes / 1e6:g} MB, the most that is read")
+    return data
+
+
+def read_text(path: Path, max_bytes: int = MAX_BYTES) -> str:
     """The text of a UTF-8 file, with line feeds as line endings.
 
     Raises:
-        InputError: the file is missing, is a folder, may not be read or is not UTF-8 text.
+        InputError: the file is missing, is a folder, may not be read, is larger or is not UTF-8 text.
     """
+    data = read_bytes(path, max_bytes)
     try:
-        return path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise InputError(str(path), "no such file") from None
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(str(path), f"not a UTF-8 text file (byte {error.start})") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+
+
+def iter_lines(path: Path) -> Iterator[tuple[int, str]]:
+    """The lines of a UTF-8 file one by one, without their ends, and their numbers from 1.
+
+    Raises:
+        InputError: as `read_text`, or there are more lines or longer ones; when that line is reached.
+    """
+    with _explained(path), path.open("rb") as file:
+        for number in itertools.count(1):
+            data = file.readline(MAX_LINE_BYTES + 1)
+            if not data:
+                return
+            if number > MAX_LINES:
+                raise InputError(str(path), f"more than {MAX_LINES} lines, the most that are read")
+            yield number, _line(data, f"{path}: line {number}", "utf-8-sig" if number == 1 else "utf-8")
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; False too for paths that the file system cannot have."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
+def _line(data: bytes, where: str, encoding: str) -> str:
+    if len(data) > MAX_LINE_BYTES:
+        raise InputError(where, f"longer than {MAX_LINE_BYTES / 1e6:g} MB, the most that a line may have")
+    try:
+        return data.decode(encoding).rstrip("\r\n")
+    except UnicodeDecodeError as error:
+        raise InputError(where, f"not UTF-8 text (byte {error.start})") from None
+
+
+@contextlib.contextmanager
+def _explained(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except FileNotFoundError:
+        raise InputError(str(path), "no such file") from None
     except OSError as error:
         raise InputError(str(path), f"cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        # A path with a NUL; everything else that is read has its own message.
+        if isinstance(error, InputError):
+            raise
+        raise InputError(str(path), f"cannot be read: {error}") from None
 
 
 @contextlib.contextmanager
@@ -37,8 +105,9 @@ def replacing(path: Path) -> Iterator[Path]:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:100]}-", suffix=path.suffix)
-    except OSError as error:
-        raise InputError(str(path), f"cannot be written: {error.strerror}") from None
+    except (OSError, ValueError) as error:
+        problem = error.strerror if isinstance(error, OSError) else error
+        raise InputError(str(path), f"cannot be written: {problem}") from None
     os.close(handle)
     temporary = Path(name)
     try:

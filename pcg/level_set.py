@@ -4,7 +4,6 @@
 fields. XSB cannot say which crate has to reach the goal, the manifest can: whoever reads the levels gets it from there.
 """
 
-import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -13,9 +12,10 @@ from typing import Literal
 
 from pydantic import Field
 
+from pcg import json_text
 from pcg.dependency import has_dependency, movable_critical
 from pcg.errors import InputError
-from pcg.files import read_text, write_text
+from pcg.files import iter_lines, write_text
 from pcg.grid import Cell
 from pcg.level import Level
 from pcg.metrics import LevelStatistics, occluded, statistics
@@ -225,15 +225,11 @@ def _recorded_goals(path: Path) -> dict[str, tuple[Cell, str]]:
 
 def _entries(path: Path) -> Iterator[ManifestEntry]:
     names: set[str] = set()
-    for number, line in enumerate(read_text(path).split("\n"), start=1):
+    for number, line in iter_lines(path):
         if not line.strip():
             continue
         where = f"{path}: line {number}"
-        try:
-            document = json.loads(line)
-        except (ValueError, RecursionError) as error:
-            raise InputError(where, f"not JSON: {error}") from None
-        entry = validated(ManifestEntry, document, where)
+        entry = validated(ManifestEntry, json_text.parse(line, where), where)
         if entry.name in names:
             raise InputError(where, f"name: a line before names the level {entry.name!r} too")
         names.add(entry.name)

@@ -6,7 +6,6 @@ the same levels on the same machine.
 """
 
 import hashlib
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,8 +16,10 @@ import numpy as np
 import onnxruntime
 from pydantic import Field
 
+from pcg import json_text
 from pcg.episodes import Episodes, EpisodeSettings
 from pcg.errors import InputError
+from pcg.files import read_bytes
 from pcg.level import Level
 from pcg.observation import Float32Array, observation_size, observations
 from pcg.representation import IntArray
@@ -122,10 +123,7 @@ def load_policy(path: Path) -> Policy:
     Raises:
         InputError: the file is missing, is no ONNX model, or is no policy.
     """
-    try:
-        weights = path.read_bytes()
-    except OSError as error:
-        raise InputError(str(path), f"cannot be read: {error.strerror}") from None
+    weights = read_bytes(path)
     options = onnxruntime.SessionOptions()
     # One thread: the networks are small, and sums are added up in the same order everywhere.
     options.intra_op_num_threads = options.inter_op_num_threads = 1
@@ -137,10 +135,7 @@ def load_policy(path: Path) -> Policy:
     text = session.get_modelmeta().custom_metadata_map.get(METADATA_KEY)
     if text is None:
         raise InputError(str(path), f"an ONNX model, but no policy: it has no metadata {METADATA_KEY!r}")
-    try:
-        document = json.loads(text)
-    except ValueError as error:
-        raise InputError(str(path), f"metadata {METADATA_KEY!r} are not JSON: {error}") from None
+    document = json_text.parse(text, f"{path}: metadata {METADATA_KEY!r}")
     settings = validated(PolicyMetadata, document, str(path)).settings()
     _require_shapes(session, settings, path)
     return Policy(settings, hashlib.sha256(weights).hexdigest(), session)

@@ -60,13 +60,7 @@ def iter_levels(path: Path) -> Iterator[Level]:
     Raises:
         InputError: naming file and line, when that line is reached; see `parse_levels`.
     """
-    try:
-        size = path.stat().st_size
-    except OSError:
-        size = 0  # read_text says what is wrong
-    if size > MAX_CELLS:
-        raise InputError(str(path), f"the file has {size} bytes; at most {MAX_CELLS} are read")
-    yield from _levels(read_text(path), str(path))
+    yield from _levels(read_text(path, max_bytes=MAX_CELLS), str(path))
 
 
 def write_levels(path: Path, levels: Iterable[Level]) -> None:
@@ -137,7 +131,9 @@ def _named_blocks(text: str) -> Iterator[_Block]:
     end = 0
     while (start := next((i for i in range(end, len(lines)) if _ROW.match(lines[i])), None)) is not None:
         before = end
-        end = next((i for i in range(start, len(lines)) if not _ROW.match(lines[i])), len(lines))
+        # One row too many is enough to refuse it.
+        last = min(start + MAX_SIDE + 1, len(lines))
+        end = next((i for i in range(start, last) if not _ROW.match(lines[i])), last)
         named = next((i for i in _naming_lines(lines, before, start, end) if i not in used), None)
         if named is not None:
             used.add(named)

@@ -15,6 +15,9 @@ from pcg.errors import InputError
 MAX_DEPTH = 20
 """Deepest nesting of lists and mappings."""
 
+MAX_VALUES = 500_000
+"""Keys and values of a document, lists and mappings counting twice; each takes some hundred bytes to read."""
+
 WIDTH = 120
 """Longest line that is written where it can be broken."""
 
@@ -107,8 +110,10 @@ def _line(mark: Any) -> int:
 
 def _require_plain(text: str, where: str) -> None:
     depth = 0
-    for event in yaml.parse(text, Loader=_Loader):
-        if isinstance(event, yaml.NodeEvent) and event.anchor is not None:
+    for count, event in enumerate(yaml.parse(text, Loader=_Loader)):
+        if count > MAX_VALUES:
+            problem = f"more than {MAX_VALUES} values"
+        elif isinstance(event, yaml.NodeEvent) and event.anchor is not None:
             problem = "anchors and aliases are not allowed"
         elif isinstance(event, (yaml.ScalarEvent, yaml.CollectionStartEvent)) and event.tag is not None:
             problem = f"tags are not allowed, found {event.tag}"

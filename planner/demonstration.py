@@ -63,9 +63,7 @@ def read_demonstration(path: Path) -> Demonstration:
     Raises:
         InputError: naming file, field or line, and reason.
     """
-    if path.is_file() and path.stat().st_size > MAX_BYTES:
-        raise InputError(str(path), f"larger than {MAX_BYTES // 1_000_000} MB, the most that a demonstration may have")
-    document = validated(_Demonstration, yaml_text.parse(read_text(path), str(path)), str(path))
+    document = validated(_Demonstration, yaml_text.parse(read_text(path, MAX_BYTES), str(path)), str(path))
     return Demonstration(document.scene, tuple(Subgoal(s.object, np.array(s.position)) for s in document.subgoals))
 
 

@@ -44,7 +44,8 @@ Number = Annotated[float, Field(strict=True, ge=-MAX_LENGTH, le=MAX_LENGTH)]
 Length = Annotated[float, Field(strict=True, ge=MIN_LENGTH, le=MAX_LENGTH)]
 Radius = Annotated[float, Field(strict=True, ge=0, le=MAX_LENGTH)]
 Share = Annotated[float, Field(strict=True, ge=0, le=1)]
-Name = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(_printable)]
+Text = Annotated[str, AfterValidator(_printable)]
+Name = Annotated[Text, Field(min_length=1, max_length=200)]
 Polygon = Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1, max_length=1000)]
 
 

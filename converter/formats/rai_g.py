@@ -36,6 +36,9 @@ NEVER_COLLIDING = frozenset({"floor", "goal", "goal_visible", "goalLarge", "goal
 _NO_SHAPE = frozenset({"none", "camera", "marker"})
 _ALIGNED = 1e-9
 
+MAX_POINTS = 2000
+"""Points of a core: both ends of an upright prism."""
+
 
 def _disc(radius: float) -> Part:
     return Part(np.zeros((1, 2)), radius)
@@ -99,7 +102,16 @@ def read_rai_g(path: Path) -> Scene:
     Raises:
         InputError: naming file and line.
     """
-    tree = _Tree(read_frames(path), str(path))
+    frames = read_frames(path)
+    try:
+        return _scene(_Tree(frames, str(path)), path)
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(str(path), str(error)) from None
+
+
+def _scene(tree: "_Tree", path: Path) -> Scene:
     tree.stand_on("floor")
     solids = [tree.solid(frame) for frame in tree.frames.values() if tree.collides(frame)]
     by_joint: dict[str, list[_Solid]] = {"": [], "rigid": [], "transXY": []}
@@ -203,6 +215,8 @@ def _core(frame: Frame) -> tuple[float, ...]:
     core = frame.attributes.get("core")
     if core is None or isinstance(core, str) or len(core) < 3 or len(core) % 3 != 0:
         raise InputError(frame.places.get("core", frame.where), f"{frame.name}: core needs a list of points x y z")
+    if len(core) > 3 * MAX_POINTS:
+        raise InputError(frame.places["core"], f"{frame.name}: core has more than {MAX_POINTS} points")
     return core
 
 

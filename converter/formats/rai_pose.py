@@ -19,6 +19,9 @@ from pcg.errors import InputError
 _UPRIGHT = 1e-6
 """Largest tilt that counts as none; files hold six digits."""
 
+MAX_FACTORS = 100
+"""Factors of a pose."""
+
 _FACTOR = re.compile(r"\s*(?:T\b)?\s*([tqdr])\s*\(([^()]*)\)\s*")
 
 
@@ -65,6 +68,10 @@ def frame_pose(frame: Frame) -> Pose:
 
 
 def _product(text: str, where: str) -> Pose:
+    # Single blanks: several in a row could be matched in many ways.
+    text = " ".join(text.split())
+    if text.count("(") > MAX_FACTORS:
+        raise InputError(where, f"pose <{text[:60]}…>: more than {MAX_FACTORS} factors")
     pose, end = IDENTITY, 0
     while end < len(text):
         match = _FACTOR.match(text, end)

@@ -7,21 +7,26 @@ The reader is tolerant where the published files are loose: separators may be mi
 stray closing bracket is skipped. Values stay uninterpreted here: a list of numbers, a pose in angle brackets, or text.
 """
 
+import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from pcg.errors import InputError
-from pcg.files import read_text
+from pcg.files import is_file, read_text
 
 MAX_BYTES = 8_000_000
 MAX_FRAMES = 10_000
+MAX_TOKENS = 400_000
+"""Words, numbers and marks of a file."""
+MAX_NAME = 200
+"""Characters of a name."""
 MAX_FILES = 100
 
 Value: TypeAlias = tuple[float, ...] | str
-"""Numbers, or the text of a word, a string, a `{set}` or a `<pose>`."""
+"""Finite numbers, or the text of a word, a string, a `{set}` or a `<pose>`."""
 
 _TOKEN = re.compile(
     r"""(?P<skipped>[\s,;]+|\#[^\n]*)
@@ -36,8 +41,7 @@ _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?
 _CLOSING = {"[": "]", "(": ")", "{": "}"}
 
 
-@dataclass(frozen=True)
-class Token:
+class Token(NamedTuple):
     """A piece of text and its place, `file, line n`."""
 
     kind: str
@@ -111,7 +115,7 @@ class _Reader:
         if not isinstance(name, str):
             raise InputError(where, "Include needs the name of a file in quotes")
         included = path.parent / name
-        if not included.is_file():
+        if not is_file(included):
             raise InputError(where, f"the included file {name!r} does not exist beside this one")
         if included.resolve() in self._files:
             raise InputError(where, f"{name!r} is included twice, or includes itself")
@@ -128,6 +132,8 @@ class _Reader:
 
 
 def _frame(name: Token, tokens: "_Tokens") -> Frame:
+    if len(name.text) > MAX_NAME:
+        raise InputError(name.where, f"frame {name.text[:60]!r}…: a name has at most {MAX_NAME} characters")
     parent = None
     if tokens.peek() == "(":
         tokens.next()
@@ -158,9 +164,7 @@ class _Tokens:
     """The tokens of one file, one ahead."""
 
     def __init__(self, path: Path) -> None:
-        if path.is_file() and path.stat().st_size > MAX_BYTES:
-            raise InputError(str(path), f"larger than {MAX_BYTES // 1_000_000} MB, the most that a scene may have")
-        self._tokens = _tokens(read_text(path), str(path))
+        self._tokens = _tokens(read_text(path, MAX_BYTES), str(path))
         self._ahead = next(self._tokens, None)
 
     def peek(self) -> str | None:
@@ -199,18 +203,24 @@ class _Tokens:
 
 
 def _tokens(text: str, file: str) -> Iterator[Token]:
-    line = 1
-    for match in _TOKEN.finditer(text):
-        kind = match.lastgroup or "bad"
-        if kind == "bad":
-            raise InputError(f"{file}, line {line}", f"unexpected {match.group()!r}")
+    line = 0
+    where = f"{file}, line 1"
+    for count, match in enumerate(_TOKEN.finditer(text)):
+        kind, piece = match.lastgroup or "bad", match.group()
+        if kind == "bad" or not (kind == "skipped" or piece.replace("\t", " ").isprintable()):
+            raise InputError(where, f"unexpected {piece[:60]!r}")
+        if count > MAX_TOKENS:
+            raise InputError(where, f"more than {MAX_TOKENS} words and marks, the most that a file may have")
         if kind != "skipped":
-            yield Token(kind, match.group(), f"{file}, line {line}")
-        line += match.group().count("\n")
+            yield Token(kind, piece, where)
+        elif lines := piece.count("\n"):
+            line += lines
+            where = f"{file}, line {line + 1}"
 
 
 def _number(text: str) -> float | None:
-    return float(text) if _NUMBER.fullmatch(text) else None
+    number = float(text) if _NUMBER.fullmatch(text) else math.inf
+    return number if math.isfinite(number) else None
 
 
 def _shown(value: Value) -> str:

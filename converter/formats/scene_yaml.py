@@ -17,7 +17,7 @@ from converter.scene import Agent, Goal, Scene
 from converter.shape import FloatArray
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
-from pcg.validation import Document, validated
+from pcg.validation import Document, PlainValues, validated
 
 MAX_BYTES = 8_000_000
 MAX_BODIES = 10_000
@@ -51,7 +51,7 @@ class SceneDocument(Document):
     walls: Annotated[tuple[BodyDocument, ...], Field(max_length=MAX_BODIES)] = ()
     objects: Annotated[tuple[BodyDocument, ...], Field(min_length=1, max_length=MAX_BODIES)]
     goal: GoalDocument
-    source: dict[str, Any] = Field(default_factory=dict)
+    source: PlainValues = Field(default_factory=dict)
 
 
 def read_scene_yaml(path: Path) -> Scene:
@@ -60,9 +60,7 @@ def read_scene_yaml(path: Path) -> Scene:
     Raises:
         InputError: naming file, field or line, and reason.
     """
-    if path.is_file() and path.stat().st_size > MAX_BYTES:
-        raise InputError(str(path), f"larger than {MAX_BYTES // 1_000_000} MB, the most that a scene may have")
-    return from_document(yaml_text.parse(read_text(path), str(path)), str(path), path.stem)
+    return from_document(yaml_text.parse(read_text(path, MAX_BYTES), str(path)), str(path), path.stem)
 
 
 def write_scene_yaml(path: Path, scene: Scene) -> None:

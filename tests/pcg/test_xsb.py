@@ -125,7 +125,7 @@ def test_large_files_are_not_read(tmp_path: Path):
     path = tmp_path / "large.xsb"
     with path.open("wb") as file:
         file.truncate(MAX_CELLS + 1)
-    with pytest.raises(InputError, match=r"large\.xsb: the file has"):
+    with pytest.raises(InputError, match=r"large\.xsb: larger than 20 MB"):
         read_levels(path)
 
 
