@@ -51,7 +51,7 @@ def run(out: Path, puzzles: Sequence[Path], levels: int = LEVELS, time_limit: fl
     Raises:
         InputError: a scene cannot be read, or the folder cannot be written.
     """
-    scenes = read_scenes(puzzles)
+    scenes = list(read_scenes(puzzles).values())
     require_writable(out)
     settings = settings_for("fast", time_limit=time_limit)
     warm_up(settings)

@@ -1,19 +1,17 @@
 """What commands read: scenes, levels and plans, all of them before the work begins."""
 
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from converter.formats import read_scene
-from converter.plan import Plan, read_plan
 from converter.preset import with_preset, with_tolerance
 from converter.scene import Scene
 from evaluate.names import require_distinct, safe_name
 from pcg.errors import InputError
 from pcg.level import Level
-from pcg.level_set import iter_level_set
-from planner.verify import require_same_scene
+from pcg.level_set import LEVELS_FILE, iter_level_set
 
 SCENE_SUFFIXES = (".yaml", ".yml", ".g")
 PLAN_SUFFIXES = (".json",)
@@ -27,6 +25,30 @@ def is_scene(path: Path) -> bool:
 def is_plan(path: Path) -> bool:
     """Whether `path` names a plan file, by its suffix; what is neither scene nor plan is taken for levels."""
     return path.suffix.lower() in PLAN_SUFFIXES
+
+
+def is_level_set(path: Path) -> bool:
+    """Whether `path` is the folder of a level set."""
+    return (path / LEVELS_FILE).is_file()
+
+
+def expanded(paths: Iterable[Path], suffixes: Sequence[str]) -> Iterator[Path]:
+    """The files that arguments name: a folder stands for the files in it with one of these suffixes, by name.
+
+    Raises:
+        InputError: a folder holds none.
+    """
+    for path in paths:
+        if not path.is_dir():
+            yield path
+            continue
+        found = sorted(file for file in path.iterdir() if file.suffix.lower() in suffixes and file.name[0] != ".")
+        if not found:
+            hint = f"; convert this level set first: manipuzzle convert {path} --out DIR" if is_level_set(path) else ""
+            raise InputError(
+                str(path), f"the folder holds no file {', '.join(f'*{suffix}' for suffix in suffixes)}{hint}"
+            )
+        yield from found
 
 
 def require_choice(option: str, value: str, allowed: Sequence[str]) -> None:
@@ -73,30 +95,12 @@ def adapted(scene: Scene, preset: str | None, tolerance: float | None) -> Scene:
     return scene if tolerance is None else with_tolerance(scene, tolerance)
 
 
-def read_scenes(paths: Sequence[Path], preset: str | None = None, tolerance: float | None = None) -> list[Scene]:
-    """The scenes of several files with different names; see `read_scene_file`."""
-    scenes = [read_scene_file(path, preset, tolerance) for path in paths]
-    require_distinct([safe_name(scene.name) for scene in scenes], "scenes")
-    return scenes
-
-
-def read_plan_with_scene(path: Path, given: Scene | None = None) -> tuple[Plan, Scene]:
-    """The plan at `path` and the scene that it was made for.
-
-    Args:
-        path: The plan's file.
-        given: The scene of a plan whose file holds none.
-
-    Raises:
-        InputError: the file is no valid plan, holds no scene, or `given` is another scene than the plan's.
-    """
-    plan = read_plan(path)
-    if given is not None:
-        require_same_scene(given, plan, str(path))
-        return plan, given
-    if plan.scene_data is None:
-        raise InputError(str(path), "the file holds no scene; name the scene's file by --scene")
-    return plan, plan.scene_data
+def read_scenes(paths: Sequence[Path], preset: str | None = None, tolerance: float | None = None) -> dict[Path, Scene]:
+    """The scenes of several files and folders by their files, with different names; see `read_scene_file`."""
+    files = list(expanded(paths, SCENE_SUFFIXES))
+    scenes = [read_scene_file(path, preset, tolerance) for path in files]
+    require_distinct([safe_name(scene.name) for scene in scenes], "scenes", [str(file) for file in files])
+    return dict(zip(files, scenes, strict=True))
 
 
 def read_playable_levels(path: Path) -> list[Level]:
@@ -114,6 +118,8 @@ def iter_playable_levels(path: Path) -> Iterator[Level]:
     Raises:
         InputError: naming file, line or level, and reason, when that level is reached.
     """
+    if path.is_dir() and not is_level_set(path):
+        raise InputError(str(path), f"no level set: the folder holds no {LEVELS_FILE}; name files of levels one by one")
     for level in iter_level_set(path):
         level.require_playable(f"{path}: level {level.name!r}")
         yield level

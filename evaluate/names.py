@@ -1,7 +1,6 @@
 """File names from the names of levels, scenes and methods."""
 
 import re
-from collections import Counter
 from collections.abc import Sequence
 
 from pcg.errors import InputError
@@ -20,16 +19,22 @@ def safe_name(name: str) -> str:
     return _UNSAFE.sub("_", name).lstrip(".")[:MAX_LENGTH] or "unnamed"
 
 
-def require_distinct(names: Sequence[str], what: str) -> None:
+def require_distinct(names: Sequence[str], what: str, sources: Sequence[str] | None = None) -> None:
     """Makes sure that no two results would be written to one file, on file systems that ignore case too.
 
     Args:
         names: File names about to be written.
-        what: What is being named, for the message: `scene`, `level`.
+        what: What is being named, for the message: `scenes`, `levels`.
+        sources: Where each name comes from, for the message.
 
     Raises:
         InputError: two names agree.
     """
-    counts = Counter(name.lower() for name in names)
-    if repeated := sorted(name for name in names if counts[name.lower()] > 1):
-        raise InputError(what, f"two inputs would be written as {repeated[0]!r}; rename one of them")
+    first: dict[str, int] = {}
+    for i, name in enumerate(names):
+        other = first.setdefault(name.lower(), i)
+        if other != i:
+            both = "" if sources is None else f", {sources[other]} and {sources[i]}"
+            raise InputError(
+                what, f"two inputs would be written as {name!r}{both}; rename one or name them in two runs"
+            )

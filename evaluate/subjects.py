@@ -14,8 +14,9 @@ from converter.render_scene import scene_drawing
 from converter.scene import Scene
 from converter.storyboard import storyboard_drawing
 from converter.theme import Theme
-from evaluate.inputs import is_plan, is_scene, read_plan_with_scene, read_playable_levels, read_scene_file
+from evaluate.inputs import is_scene, read_playable_levels, read_scene_file
 from evaluate.names import safe_name
+from evaluate.plan_source import names_plan, read_named_plan
 from pcg.errors import InputError
 from pcg.level import Level
 from pcg.solver import SolverStatus, solve
@@ -74,15 +75,15 @@ def read_subjects(path: Path, given: Scene | None) -> list[Subject]:
     """What a file or the folder of a level set holds.
 
     Args:
-        path: Scene, plan or levels, by its suffix.
+        path: Scene, plan or levels, by its suffix; or a trial of a study.
         given: Scene of a plan whose file holds none.
 
     Raises:
         InputError: naming the file, the place in it, and the reason.
     """
-    if is_plan(path):
-        plan, scene = read_plan_with_scene(path, given)
-        return [plan_subject(path.stem, scene, plan)]
+    if names_plan(path):
+        found = read_named_plan(path)
+        return [plan_subject(found.name, found.scene(given), found.plan)]
     if is_scene(path):
         return [scene_subject(read_scene_file(path))]
     return [level_subject(level) for level in read_playable_levels(path)]

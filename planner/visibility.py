@@ -191,6 +191,12 @@ class ShortestPathTree:
         """The corners (k, 2) [m] that can be reached: where contact ends a straight motion, or shortest paths turn."""
         return np.asarray(self._points[1:][np.isfinite(self._distance[1:])])
 
+    @property
+    def edges(self) -> FloatArray:
+        """The straight motions (k, 2, 2) [m] of which the tree consists, each from the point before to a turn."""
+        reached = np.flatnonzero(self._previous >= 0)
+        return np.stack([self._points[self._previous[reached]], self._points[reached]], axis=1)
+
     def reaches(self, goals: FloatArray) -> BoolArray:
         """For each of `goals` (n, 2) whether a free path leads to it."""
         obstacles = self.space.obstacles.arrays

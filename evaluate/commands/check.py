@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from converter.image_file import write_png
-from converter.plan import Plan, read_plan
+from converter.plan import Plan
 from converter.preview.picture import report_drawing, summary
 from converter.preview.report import SceneReport
 from converter.raster import paint
@@ -17,8 +17,9 @@ from converter.scene import Scene
 from evaluate.commands.options import Json, Preset, SceneFiles, Tolerance, Workers, application
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.names import safe_name
-from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.output import counted, print_json, print_line, print_table, progress
 from evaluate.parallel import in_order
+from evaluate.plan_source import read_plans
 from evaluate.scene_check import check
 from pcg.errors import InputError
 from planner.verify import require_same_scene
@@ -50,7 +51,9 @@ def run(
     plan: Annotated[
         list[Path] | None,
         typer.Option(
-            metavar="PLAN", help="Play a plan of one of the scenes back; repeat for more.", show_default=False
+            metavar="PLAN",
+            help="Play a plan of one of the scenes back, or those of a folder; repeat for more.",
+            show_default=False,
         ),
     ] = None,
     push: Annotated[
@@ -81,10 +84,10 @@ def run(
     Exit status 1 if a scene is not valid, the disc does not arrive at the end of its way, or a plan does not play back.
     That no way leads to an object is reported but no flaw, for others may have to be carried away first.
 
-    Example:  manipuzzle check out/scenes/*.yaml --picture out/checks --workers 2
+    Example:  manipuzzle check out/scenes --picture out/checks --workers 2
     """
     request = Request(static=static, push=push, picture=picture)
-    found = read_scenes(scenes, preset, tolerance)
+    found = list(read_scenes(scenes, preset, tolerance).values())
     tasks = list(zip(found, _plans_of(found, plan or []), strict=True))
     if picture is not None:
         require_writable(picture)
@@ -95,7 +98,7 @@ def run(
         print_json({"scenes": [report.document() for report in reports]})
     else:
         print_table(["scene", "all well", "found"], [(r.scene, r.all_well, summary(r)) for r in reports])
-        print_line(f"{sum(report.valid for report in reports)} of {len(reports)} scenes are valid")
+        print_line(f"{sum(report.valid for report in reports)} of {counted(len(reports), 'scene')} valid")
     return all(report.all_well for report in reports)
 
 
@@ -116,15 +119,15 @@ def _plans_of(scenes: Sequence[Scene], paths: Sequence[Path]) -> list[Plan | Non
     """
     found: dict[str, Plan] = {}
     hashes = {scene.geometry_hash for scene in scenes}
-    for path in paths:
-        plan = read_plan(path)
+    for named in read_plans(paths):
+        plan, where = named.plan, named.where
         if plan.scene_hash not in hashes:
             if len(scenes) == 1:
-                require_same_scene(scenes[0], plan, str(path))
-            raise InputError(str(path), f"plan of a scene that is not given: {plan.scene!r} ({plan.scene_hash})")
+                require_same_scene(scenes[0], plan, where)
+            raise InputError(where, f"plan of a scene that is not given: {plan.scene!r} ({plan.scene_hash})")
         if plan.scene_hash in found:
-            raise InputError(str(path), f"a second plan for {plan.scene!r}; check one at a time")
+            raise InputError(where, f"a second plan for {plan.scene!r}; check one at a time")
         if not plan.solved:
-            raise InputError(str(path), f"no plan to play back: its status is {plan.status}")
+            raise InputError(where, f"no plan to play back: its status is {plan.status}")
         found[plan.scene_hash] = plan
     return [found.get(scene.geometry_hash) for scene in scenes]

@@ -18,9 +18,19 @@ from converter.formats.mjcf import Movable, write_mjcf
 from converter.preset import CLEAR, PRESETS
 from converter.scene import Scene
 from evaluate.commands.options import Json, Out, Tolerance, Workers, application
-from evaluate.inputs import adapted, is_scene, iter_playable_levels, read_scene_file, require_choice, require_writable
+from evaluate.inputs import (
+    SCENE_SUFFIXES,
+    adapted,
+    expanded,
+    is_level_set,
+    is_scene,
+    iter_playable_levels,
+    read_scene_file,
+    require_choice,
+    require_writable,
+)
 from evaluate.names import require_distinct, safe_name
-from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.output import counted, print_json, print_line, print_table, progress
 from evaluate.parallel import in_order
 from pcg.errors import InputError
 from pcg.level import Level
@@ -30,7 +40,9 @@ app = application()
 
 @app.command()
 def run(
-    inputs: Annotated[list[Path], typer.Argument(metavar="LEVEL|SCENE", help="XSB files, level sets, scene files.")],
+    inputs: Annotated[
+        list[Path], typer.Argument(metavar="LEVEL|SCENE", help="XSB files, level sets, scene files, folders of these.")
+    ],
     *,
     out: Out,
     to: Annotated[
@@ -115,7 +127,7 @@ def run(
         print_json({"scenes": [{"scene": name, "file": file} for name, file in results]})
     else:
         print_table(["scene", "file"], results)
-        print_line(f"{len(results)} scenes written to {out}")
+        print_line(f"{counted(len(results), 'scene')} written to {out}")
     return True
 
 
@@ -156,10 +168,11 @@ class Conversion:
 
 @dataclass(frozen=True, eq=False)
 class _Input:
-    """A level, or a scene file, and the name of what it becomes."""
+    """A level, or a scene file, the name of what it becomes, and what messages call it."""
 
     name: str
     source: Level | Path
+    where: str
 
 
 def conversion_of(out: Path, to: str, preset: str | None, tolerance: float | None, **options: Any) -> Conversion:
@@ -195,8 +208,9 @@ def convert_all(inputs: Sequence[Path], conversion: Conversion, workers: int) ->
     Raises:
         InputError: an input cannot be converted, two become one file, or the folder cannot be written.
     """
-    names = [source.name for source in _inputs(inputs, conversion)]
-    require_distinct(names, "inputs")
+    found = [(source.name, source.where) for source in _inputs(inputs, conversion)]
+    names = [name for name, _ in found]
+    require_distinct(names, "inputs", [where for _, where in found])
     require_writable(conversion.out)
     with progress() as bar:
         files = in_order(partial(_convert, conversion), _inputs(inputs, conversion), workers)
@@ -205,13 +219,15 @@ def convert_all(inputs: Sequence[Path], conversion: Conversion, workers: int) ->
 
 def _inputs(paths: Sequence[Path], conversion: Conversion) -> Iterator[_Input]:
     """All inputs one by one, each validated when it is reached."""
-    for path in paths:
+    files = (file for path in paths for file in ((path,) if is_level_set(path) else expanded([path], SCENE_SUFFIXES)))
+    for path in files:
         if is_scene(path):
             _require_options_of_scenes(path, conversion)
-            yield _Input(safe_name(read_scene_file(path, conversion.preset, conversion.tolerance).name), path)
+            scene = read_scene_file(path, conversion.preset, conversion.tolerance)
+            yield _Input(safe_name(scene.name), path, str(path))
         else:
             for level in iter_playable_levels(path):
-                yield _Input(safe_name(level.name), level)
+                yield _Input(safe_name(level.name), level, f"{path}: level {level.name!r}")
 
 
 def _require_options_of_scenes(path: Path, conversion: Conversion) -> None:

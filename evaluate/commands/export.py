@@ -12,10 +12,11 @@ from converter.formats.plan_tables import write_csv, write_npz
 from converter.plan import Plan
 from converter.scene import Scene
 from converter.trajectory import SpeedProfile, TimedPlan
-from evaluate.commands.options import Json, Out, SceneOfPlans, application
-from evaluate.inputs import read_plan_with_scene, read_scene_file, require_choice, require_writable
+from evaluate.commands.options import PLANS_HELP, Json, Out, SceneOfPlans, application
+from evaluate.inputs import read_scene_file, require_choice, require_writable
 from evaluate.names import require_distinct, safe_name
-from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.output import counted, print_json, print_line, print_table, progress
+from evaluate.plan_source import read_plans
 from pcg.files import write_text
 
 app = application()
@@ -28,7 +29,7 @@ Writer = Callable[[Path, str, Scene, Plan], list[Path]]
 
 @app.command()
 def run(
-    plans: Annotated[list[Path], typer.Argument(metavar="PLAN", help="Plan files (.json).")],
+    plans: Annotated[list[Path], typer.Argument(metavar="PLAN", help=PLANS_HELP)],
     *,
     out: Out,
     to: Annotated[str, typer.Option(metavar="NAME", help="csv, npz (NumPy) or pddl.")] = "csv",
@@ -48,20 +49,21 @@ def run(
     profile = profile_of(speed, acceleration, grasp_time)
     require_choice("--to", to, FORMATS)
     given = None if scene is None else read_scene_file(scene)
-    found = [read_plan_with_scene(path, given) for path in plans]
-    names = [safe_name(path.stem) for path in plans]
-    require_distinct(names, "plans")
+    found = list(read_plans(plans))
+    of_scenes = [(each.scene(given), each.plan) for each in found]
+    names = [safe_name(each.name) for each in found]
+    require_distinct(names, "plans", [each.where for each in found])
     require_writable(out)
     write = write_pddl if to == "pddl" else table_writer(to, profile, step)
     results: list[tuple[str, list[Path]]] = []
     with progress() as bar:
-        for name, (plan, of_plan) in zip(names, bar.track(found, description="plans"), strict=True):
+        for name, (of_plan, plan) in zip(names, bar.track(of_scenes, description="plans"), strict=True):
             results.append((name, write(out, name, of_plan, plan)))
     if json:
         print_json({"plans": [{"plan": name, "files": [str(file) for file in files]} for name, files in results]})
     else:
         print_table(["plan", "file"], [(name, str(file)) for name, files in results for file in files])
-        print_line(f"{len(results)} plans exported to {out}")
+        print_line(f"{counted(len(results), 'plan')} exported to {out}")
     return True
 
 

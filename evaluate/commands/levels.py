@@ -8,7 +8,7 @@ import typer
 
 from evaluate.commands.options import Json, application
 from evaluate.inputs import read_playable_levels
-from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.output import counted, print_json, print_line, print_table, progress
 from pcg.report import report_levels, summarise
 
 app = application()
@@ -38,7 +38,9 @@ def run(
         ]
         print_table([*columns, "duplicate of"], rows)
         print_line(
-            f"{summary.levels} levels: {summary.solvable} solvable, {summary.occluded} occluded, "
-            f"{summary.duplicates} duplicates"
+            f"{counted(summary.levels, 'level')}: {summary.solvable} solvable, {summary.occluded} occluded, "
+            f"{counted(summary.duplicates, 'duplicate')}"
         )
+        if undecided := sum(report.solvable is None for report in reports):
+            print_line(f"solvable -: undecided, the solver gave up on {counted(undecided, 'level')}")
     return all(report.solvable is True for report in reports)

@@ -17,7 +17,8 @@ Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of all random 
 Workers = Annotated[int, typer.Option(metavar="N", min=1, max=1024, help="Processes that share the work.")]
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (.yaml, .g).")]
-SceneFiles = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scene files (.yaml, .g).")]
+SceneFiles = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scene files (.yaml, .g) and folders of them.")]
+PLANS_HELP = "Plan files (.json), folders of them, and trials DIR#KEY of studies."
 SceneOfPlans = Annotated[
     Path | None,
     typer.Option("--scene", metavar="SCENE", help="Scene of plans whose files hold none.", show_default=False),

@@ -1,6 +1,6 @@
 """`manipuzzle render`: pictures, animations and pages of levels, scenes and plans."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -10,9 +10,17 @@ import typer
 from converter.scene import Scene
 from converter.theme import THEMES
 from evaluate.commands.options import Json, Out, SceneOfPlans, Theme, application
-from evaluate.inputs import read_scene_file, require_choice, require_writable
+from evaluate.inputs import (
+    PLAN_SUFFIXES,
+    SCENE_SUFFIXES,
+    expanded,
+    is_level_set,
+    read_scene_file,
+    require_choice,
+    require_writable,
+)
 from evaluate.names import require_distinct, safe_name
-from evaluate.output import print_json, print_line, print_table, progress
+from evaluate.output import counted, print_json, print_line, print_table, progress
 from evaluate.picture_files import FORMATS, PAGE, STILL, Picture, Style, write_pictures
 from evaluate.subjects import Subject, as_storyboard, read_subjects
 from pcg.errors import InputError
@@ -26,7 +34,11 @@ SHEET = "sheet"
 @app.command()
 def run(
     inputs: Annotated[
-        list[Path], typer.Argument(metavar="LEVEL|SCENE|PLAN", help="XSB files, level sets, scenes, plans.")
+        list[Path],
+        typer.Argument(
+            metavar="LEVEL|SCENE|PLAN",
+            help="XSB files, level sets, scenes, plans, folders of scenes and plans, trials DIR#KEY of studies.",
+        ),
     ],
     *,
     out: Out,
@@ -55,7 +67,7 @@ def run(
     request = Request(format_, scene, style, sheet=sheet, storyboard=storyboard)
     _require_possible(request)
     given = None if scene is None else read_scene_file(scene)
-    subjects = [subject for path in inputs for subject in _subjects(path, request, given)]
+    subjects = [subject for path in drawn_files(inputs) for subject in _subjects(path, request, given)]
     pictures = _pictures(subjects, out, request)
     require_distinct([picture.file.stem for picture in pictures], "inputs")
     require_writable(out)
@@ -66,7 +78,7 @@ def run(
         print_json({"pictures": [{"name": picture.file.stem, "file": str(picture.file)} for picture in pictures]})
     else:
         print_table(["name", "file"], [(picture.file.stem, str(picture.file)) for picture in pictures])
-        print_line(f"{len(pictures)} {'file' if len(pictures) == 1 else 'files'} written to {out}")
+        print_line(f"{counted(len(pictures), 'file')} written to {out}")
     return True
 
 
@@ -97,6 +109,16 @@ def _require_possible(request: Request) -> None:
     for option, wanted in (("--sheet", request.sheet), ("--storyboard", request.storyboard)):
         if wanted and request.format not in STILL:
             raise InputError(option, f"makes a picture; --format must be {' or '.join(STILL)}, found {request.format}")
+
+
+def drawn_files(paths: Iterable[Path]) -> Iterator[Path]:
+    """The inputs, each level set as it is, and of other folders the scenes and plans in them.
+
+    Raises:
+        InputError: a folder holds none.
+    """
+    for path in paths:
+        yield from (path,) if is_level_set(path) else expanded([path], (*SCENE_SUFFIXES, *PLAN_SUFFIXES))
 
 
 def _subjects(path: Path, request: Request, given: Scene | None) -> Iterable[Subject]:

@@ -22,7 +22,7 @@ from evaluate.commands.options import (
 )
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.names import safe_name
-from evaluate.output import log, print_json, print_line, print_table, progress
+from evaluate.output import counted, log, print_json, print_line, print_table, progress
 from evaluate.setting_values import assignments, changed
 from evaluate.trial import TrialOutcome, require_plannable, run_trial, warm_up
 from planner import Settings, settings_for
@@ -64,13 +64,13 @@ def run(
         settings, set_ or [], demonstrations, method=method, time_limit=time_limit, improve=improve
     )
     named = read_scenes(scenes, preset, tolerance)
-    for path, scene in zip(scenes, named, strict=True):
+    for path, scene in named.items():
         require_plannable(scene, of_planner, str(path))
     require_writable(out)
     warm_up(of_planner)
     results: list[SolveResult] = []
     with progress() as bar:
-        for scene in bar.track(named, description="scenes"):
+        for scene in bar.track(named.values(), total=len(named), description="scenes"):
             outcome, result = solve_to_file(scene, of_planner, seed, out)
             results.append(result)
             for violation in outcome.violations or ():
@@ -160,4 +160,4 @@ def _print(results: Sequence[SolveResult]) -> None:
         for r in results
     ]
     print_table(columns, rows)
-    print_line(f"{sum(r.verified is True for r in results)} of {len(results)} scenes solved")
+    print_line(f"{sum(r.verified is True for r in results)} of {counted(len(results), 'scene')} solved")

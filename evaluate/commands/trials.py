@@ -10,8 +10,8 @@ import typer
 from converter.plan import write_plan
 from evaluate.commands.options import Json, application
 from evaluate.inputs import require_writable
-from evaluate.names import safe_name
-from evaluate.output import log, print_json, print_line, print_table
+from evaluate.output import counted, log, print_json, print_line, print_table
+from evaluate.plan_source import plan_name
 from evaluate.record import plan_of
 from evaluate.store import StoredTrials, TrialRow
 from pcg.errors import InputError
@@ -67,7 +67,9 @@ def run(
     verify: Annotated[bool, typer.Option("--verify", help="Verify the plans anew.")] = False,
     json: Json = False,
 ) -> bool:
-    """List the trials of a study; with --out write their plans, which verify and render read, scene included.
+    """List the trials of a study; with --out write their plans, scene included.
+
+    verify, render and export also take a trial as DIR#KEY, with the beginning of its key.
 
     Exit status 1 if --verify finds a plan that is not valid.
 
@@ -85,7 +87,7 @@ def run(
     else:
         columns = ["trial", "scene", "preset", "method", "seed", "status", "time [s]", "verified", "message", "plan"]
         print_table(columns, ([trial[_FIELDS[column]] for column in columns] for trial in found))
-        print_line(f"{len(found)} trials, {sum(trial['verified'] is True for trial in found)} solved")
+        print_line(f"{counted(len(found), 'trial')}, {sum(trial['verified'] is True for trial in found)} solved")
     return not any(trial["verified"] is False for trial in found) if verify else True
 
 
@@ -111,7 +113,7 @@ def _reported(row: TrialRow, out: Path | None, *, verified: bool) -> dict[str, A
             if valid != row.verified:
                 log(f"{row.key}: the verdict was {row.verified}, now it is {valid}")
         if out is not None:
-            file = out / f"{_name(row)}.json"
+            file = out / f"{plan_name(row)}.json"
             write_plan(file, plan)
     return {
         "trial": row.key,
@@ -125,8 +127,3 @@ def _reported(row: TrialRow, out: Path | None, *, verified: bool) -> dict[str, A
         "message": message,
         "plan": None if file is None else str(file),
     }
-
-
-def _name(row: TrialRow) -> str:
-    """Name of a plan's file: the trial's key tells equal names in two geometries apart."""
-    return "-".join([safe_name(row.scene), safe_name(row.method), str(row.seed), row.key[:6]])
