@@ -12,7 +12,7 @@ from typing import Self
 
 import numpy as np
 
-from converter.scene import NUMERIC_SLACK, Agent, Body
+from converter.scene import NUMERIC_SLACK, Agent, Body, heights_meet
 from converter.shape import FloatArray
 from planner import kernel
 from planner.minkowski import minkowski_sum
@@ -198,8 +198,7 @@ def _corner_angles(polygon: FloatArray, rho: float) -> tuple[FloatArray, FloatAr
 
 def agent_obstacles(agent: Agent, body: Body, tolerance: float) -> ObstacleSet:
     """Forbidden agent centres relative to the position of `body`."""
-    bottom, top = body.bottom_top
-    if min(top, agent.height) - max(bottom, 0.0) <= NUMERIC_SLACK:
+    if not heights_meet(body.bottom_top, (0.0, agent.height)):
         return ObstacleSet.of([], [])
     rho = [agent.radius + part.edge_radius - tolerance - NUMERIC_SLACK for part in body.parts]
     return ObstacleSet.of(body.cores, rho)
@@ -207,8 +206,7 @@ def agent_obstacles(agent: Agent, body: Body, tolerance: float) -> ObstacleSet:
 
 def body_obstacles(moving: Body, body: Body, tolerance: float) -> ObstacleSet:
     """Forbidden positions of `moving` relative to the position of `body`."""
-    (bottom, top), (other_bottom, other_top) = moving.bottom_top, body.bottom_top
-    if min(top, other_top) - max(bottom, other_bottom) <= NUMERIC_SLACK:
+    if not heights_meet(moving.bottom_top, body.bottom_top):
         return ObstacleSet.of([], [])
     pairs = [(i, j) for i in range(len(moving.parts)) for j in range(len(body.parts))]
     return ObstacleSet.of(

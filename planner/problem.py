@@ -89,8 +89,7 @@ class Problem:
 
     def distance_to_goal(self, configuration: Configuration) -> float:
         """How far the goal-object's centre is from the goal [m], as the crow flies."""
-        goal, centre = self.scene.goal, configuration.objects[self.goal_index]
-        return float(np.hypot(*np.maximum(np.abs(centre - goal.position) - goal.size / 2, 0.0)))
+        return self.scene.goal.distance(configuration.objects[self.goal_index])
 
     def agent_space(self, configuration: Configuration, held: int | None = None) -> ConfigurationSpace:
         """Where the agent's centre may be; a `held` object is no obstacle."""
