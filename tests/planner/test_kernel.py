@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from converter.shape import FloatArray
 from planner.configuration_space import ObstacleSet
-from planner.kernel import points_free, segment_free, segment_hits_polygon, segments_free
+from planner.kernel import joined, points_free, points_free_within, segment_free, segment_hits_polygon, segments_free
 from tests.planner.plain_geometry import clearance, meets_interior, points, polygons
 
 BAND = 1e-9
@@ -174,3 +174,22 @@ def test_tiny_radii_make_no_hole_at_a_vertex(rho: float):
     """A segment that enters through a vertex is stopped, also if rounding puts that on neither side of the line."""
     triangle = np.array([[0.25, 0.5], [-0.125, 0.9330127], [-0.125, 0.0669873]])
     assert hits(np.array([0.4995, 0.5]), np.array([0.0, 0.5]), triangle, rho)
+
+
+def test_bounds_are_closed():
+    """A place on the border of the bounds is within them, one beyond any of the four sides is not."""
+    bounds = np.array([[-2.0, -3.0], [4.0, 5.0]])
+    border = np.array([[-2.0, 0.0], [4.0, 0.0], [0.0, -3.0], [0.0, 5.0]])
+    beyond = border + 1e-12 * np.sign(border)
+    for obstacles, free in ((ObstacleSet.of([], []), True), (ObstacleSet.of([8 * SQUARE], [0.0]), False)):
+        assert points_free_within(border, bounds, *obstacles.arrays).tolist() == [free] * 4
+        assert points_free_within(beyond, bounds, *obstacles.arrays).tolist() == [False] * 4
+
+
+def test_joined_sets_are_their_members_moved():
+    """A set joined with another one, translated, has the arrays of all members where they are then."""
+    triangle, by = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]), np.array([10.0, -20.0])
+    here, there = ObstacleSet.of([SQUARE, triangle], [0.5, -0.1]), ObstacleSet.of([triangle, SQUARE[:1]], [0.2, 0.3])
+    expected = ObstacleSet.of([SQUARE, triangle, triangle + by, SQUARE[:1] + by], [0.5, -0.1, 0.2, 0.3])
+    for found, array in zip(joined(*here.arrays, *there.arrays, by), expected.arrays, strict=True):
+        np.testing.assert_allclose(found, array, atol=1e-14)

@@ -187,6 +187,7 @@ def test_grasp_without_touch():
     violation = only(scene, move((0, 0), (0.648, 0)), carry("obj", (0.648, 0), (0.648, 1)))
     assert (violation.kind, violation.segment) == (ViolationKind.NO_TOUCH, 1)
     assert violation.amount == pytest.approx(2e-3)
+    assert violation.message == "segment 1: the agent grasps obj, which is 0.002 m away"
     assert kinds(scene, move((0, 0), (0.649, 0)), carry("obj", (0.649, 0), (0.649, 1))) == set()
 
 
@@ -198,6 +199,7 @@ def test_grasp_at_another_height():
         (ViolationKind.NO_TOUCH, None),
         (ViolationKind.GOAL_MISSED, pytest.approx(0.3)),
     ]
+    assert found[0].message == "segment 1: the agent grasps other, which is at another height"
 
 
 def test_grasp_that_penetrates():

@@ -183,6 +183,20 @@ def test_goals_that_are_not_free_are_not_reached():
     assert tree.reaches(np.empty((0, 2))).shape == (0,)
 
 
+def test_turns_are_the_corners_within_reach():
+    """Inside a pen the corners of the two blocks in it that the other does not cover; outside none of these."""
+    square = vectors([-1, -1], [1, -1], [1, 1], [-1, 1])
+    sides = [square * [0.1, 1.2] + [x, 0] for x in (-1.1, 1.1)] + [square * [1.2, 0.1] + [0, y] for y in (-1.1, 1.1)]
+    cores = [*sides, 0.3 * square, 0.1 * square + [0.3, 0.3]]
+    space = ConfigurationSpace(ObstacleSet.of(cores, [0.0] * 6), BOUNDS)
+    inside = ShortestPathTree(space, np.array([-0.7, 0.0])).turns
+    of_blocks = vectors([-0.3, -0.3], [-0.3, 0.3], [0.2, 0.4], [0.3, -0.3], [0.4, 0.2], [0.4, 0.4])
+    np.testing.assert_allclose(inside[np.lexsort(inside.round(6).T[::-1])], of_blocks, atol=1e-8)
+    outside = ShortestPathTree(space, np.array([-2.0, 0.0])).turns
+    assert len(outside) > 0
+    assert (np.abs(outside).max(axis=1) > 1.1).all()
+
+
 def test_closed_room_is_left_by_no_path():
     """Four walls that overlap at their corners let nothing out."""
     pen = [wall(0, 1, 2.2, 0.2), wall(0, -1, 2.2, 0.2), wall(1, 0, 0.2, 2.2), wall(-1, 0, 0.2, 2.2)]
