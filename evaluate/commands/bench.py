@@ -71,5 +71,5 @@ def _time_studies(trials: int, *, as_json: bool) -> None:
 
 def _cells(row: BenchRow) -> tuple[object, ...]:
     peer_median = None if row.peer_median_s is None else duration(row.peer_median_s)
-    besides = ", ".join(f"{name.replace('_', ' ')} {value:.0%}" for name, value in row.figures.items())
+    besides = ", ".join(f"{name.replace('_', ' ')} {value:.0%}" for name, value in row.figures.items()) or None
     return row.name, duration(row.median_s), duration(row.p95_s), row.n, row.peer, peer_median, row.ratio, besides
