@@ -1,4 +1,4 @@
-# A fresh machine needs python3 (3.11 or later), make and git; everything else goes into .venv.
+# A fresh machine needs python3 (3.11 to 3.13), make and git; everything else goes into .venv.
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -8,7 +8,7 @@ RL_INSTALLED := .venv-rl/.installed
 COMPILE := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-header --group dev
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-rl demo bench corpus corpus-check test test-rl lock
+.PHONY: help setup setup-rl demo bench corpus corpus-check test test-rl lock dist install-check
 
 help:
 	@echo "make setup  install the locked dependencies and manipuzzle itself into .venv"
@@ -18,11 +18,13 @@ help:
 	@echo "make test   lint, types and tests: what CI runs"
 	@echo "make test-rl  the tests that need torch, in an environment of their own (.venv-rl)"
 	@echo "make lock   resolve the dependencies anew into the two lock files"
+	@echo "make dist   wheel and sdist into dist/; install-check: install the wheel elsewhere and use it there"
 
 setup: $(INSTALLED)
 
 $(BIN)/uv:
-	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or later is needed")'
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14) and \
+	  "Python 3.11 to 3.13 is needed, for which OMPL has wheels; choose one by PYTHON=...")'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet uv
 
@@ -65,3 +67,23 @@ test-rl: setup-rl
 lock: $(BIN)/uv
 	$(COMPILE) --extra cluster --output-file requirements.lock pyproject.toml
 	$(COMPILE) --extra cluster --extra rl --output-file requirements-rl.lock pyproject.toml
+
+dist: setup
+	rm -rf dist
+	$(BIN)/uv build --quiet --out-dir dist
+
+# Without the checkout: the wheel alone in an environment of its own, used from an empty folder.
+install-check: dist
+	@set -e; work=$$(mktemp -d); trap 'rm -rf "$$work"' EXIT; \
+	$(BIN)/uv venv --quiet --python $(BIN)/python "$$work/venv"; \
+	$(BIN)/uv pip install --quiet --python "$$work/venv/bin/python" --constraints requirements.lock dist/*.whl; \
+	cd "$$work"; PATH="$$work/venv/bin:$$PATH"; \
+	if python -c 'import torch' 2>/dev/null; then echo 'torch is installed' >&2; exit 1; fi; \
+	cp -r "$$(manipuzzle data)" data; \
+	manipuzzle generate --agent m0 --count 2 --seed 1 --out levels; \
+	manipuzzle convert levels --out scenes; \
+	manipuzzle check scenes/*.yaml; \
+	manipuzzle solve scenes/*.yaml data/puzzles/wall.yaml --out plans; \
+	manipuzzle render plans/wall-*.json --format html --out pictures; \
+	manipuzzle study data/studies/smoke.yaml --out study; \
+	manipuzzle report study

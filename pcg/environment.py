@@ -46,7 +46,7 @@ _COUNTED = tuple(column.name.lower() for column in Column)
 """What a step's information says about the map."""
 
 
-def observation_space(settings: EpisodeSettings) -> spaces.Dict[Any]:
+def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # before 1.4 no generic class at run time
     """The space of one observation."""
     shape = settings.rows, settings.columns
     parts: dict[str, spaces.Space[Any]] = {
