@@ -291,6 +291,42 @@ def test_the_limit_is_never_taken_for_unsolvable():
     assert cut.pushes is None
 
 
+@pytest.mark.parametrize("objective", Objective)
+def test_the_limit_is_kept_exactly(objective: Objective):
+    """A search that is cut short has visited as many states as allowed; the number it needs is enough."""
+    (level,) = parse_levels("########\n#@     #\n# $  $ #\n#     .#\n########", "test.xsb")
+    needed = solve(level, objective=objective).states
+    for limit in range(1, needed):
+        cut = solve(level, max_states=limit, objective=objective)
+        assert (cut.status, cut.states) == (SolverStatus.LIMIT, limit)
+    assert solve(level, max_states=needed, objective=objective).solved
+
+
+@pytest.mark.parametrize("objective", Objective)
+@pytest.mark.parametrize("length", [60, 70, 300])
+def test_far_more_pushes_than_the_bound_says(length: int, objective: Objective):
+    """A crate in a corridor has to be pushed all along it, before one at its end goes home with a single push.
+
+    The bound is 1 where the search begins; queue, states and table outgrow their first sizes.
+    """
+    is_wall = np.zeros((2, length + 4), dtype=bool)
+    is_wall[1, :length] = True
+    level = Level.of(is_wall, players=[(0, 0)], crates=[(0, 1), (1, length + 1)], targets=[(1, length + 2)])
+    solution = solve(level, objective=objective)
+    assert solution.lurd == "R" * length + "dR"
+    assert (solution.pushes, solution.goal_crate) == (length + 1, (1, length + 1))
+
+
+def test_the_bound_leads_straight_to_the_target():
+    """In an open room a crate that needs 8 pushes in a line takes few states, and so do two of them side by side."""
+    lone = Level.of(np.zeros((11, 11), dtype=bool), players=[(5, 0)], crates=[(5, 1)], targets=[(5, 9)])
+    assert solve(lone).pushes == 8
+    assert solve(lone).states <= 1 + 8 * 4
+    two = Level.of(np.zeros((11, 11), dtype=bool), players=[(5, 0)], crates=[(4, 1), (6, 1)], targets=[(4, 9), (6, 9)])
+    assert solve(two).pushes == 16
+    assert solve(two).states <= 1 + 9 * 9 * 4
+
+
 def test_huge_levels_are_left_undecided():
     """A board beyond the largest is not searched."""
     tiles = np.zeros((1, MAX_CELLS + 1), dtype=np.uint8)

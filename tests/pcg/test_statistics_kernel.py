@@ -115,6 +115,8 @@ def test_only_furnished_maps_are_solved():
     assert one("@ $ .")[Column.SOLVABLE] == 1
     assert one("@ $@.")[Column.SOLVABLE] == 0
     assert one("@ $..")[Column.SOLVABLE] == 0
+    assert one("@ $  ")[Column.SOLVABLE] == 0
+    assert one("  $ .")[Column.SOLVABLE] == 0
     assert one("@ $ ./#####/     ")[Column.SOLVABLE] == 0
     assert one("@$ .$", max_crates=1)[Column.SOLVABLE] == 0
     assert one("@$ .$", max_crates=2)[Column.SOLVABLE] == 1
@@ -132,6 +134,30 @@ def test_clearance_counts_free_cells_around_the_most_enclosed_crate():
     """Players and targets leave room for a grasp, walls and crates do not."""
     assert one("@ ./ $ /   ")[Column.CLEARANCE] == 8
     assert one("@$./   ")[Column.CLEARANCE] == 5
+
+
+@pytest.mark.parametrize(
+    ("text", "hidden"),
+    [
+        ("####/@ $./####", 0),
+        ("@  /#$ / . ", 0),  # the ray touches the corner of a wall
+        ("@   /#   / $. /    ", 1),  # it passes through one
+        ("@    /  $  /    $/    .", 1),  # through the middle of another crate
+        (" .  / $  /  # /   @", 1),
+        (" .  / $  /   #/   @", 0),
+        ("  @  /     / $   / $   / .   ", 0),  # touches the other crate's square, which is half as wide as a wall's
+        ("  @  /     / #   / $.  /     ", 1),
+    ],
+)
+def test_the_goal_crate_is_hidden_where_the_ray_is_blocked(text: str, hidden: int):
+    """A ray between cell centres that passes through a wall or another crate's square; to touch a corner is none."""
+    found = one(text)
+    assert (found[Column.SOLVABLE], found[Column.OCCLUDED]) == (1, hidden)
+
+
+def test_no_look_up_is_no_hit():
+    """The hit rate of an empty cache is 0."""
+    assert judge().hit_rate == 0.0
 
 
 def test_novelty_is_the_distance_to_the_nearest_of_the_archive():
