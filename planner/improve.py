@@ -6,8 +6,8 @@ and every candidate is decided exactly in about a millisecond, so simple means g
 - *Local search* changes a decision or two at a time (`planner.improve_moves`) and keeps what is better.
 - It starts anew, again and again, where it may end in another optimum: from the best route shaken, from a new search,
   or from a search that goes on from some configuration of the best route. In O-Room the way from the other side of the
-  object is a third as long, but takes a first carry of 10 cm exactly, from contact to contact: half of the searches
-  leave out what is more than half as long as the best route, and so try the ways nearby more often.
+  object is a third as long, but takes a first carry of 10 cm exactly, from contact to contact: most searches leave
+  out what is more than half as long as the best route, and so try the ways nearby more often.
 - Routes that are much shorter but take a pick-place or two more are kept beside the best one: they often lose them.
 
 Better means fewer pick-places, or as many and a shorter way. Nothing counts as better before the independent
@@ -31,8 +31,10 @@ from planner.search import Search
 from planner.settings import PRESETS, Settings
 from planner.verify import verify
 
-RESTART = replace(PRESETS["fast"], method="Rnd+FPR", max_expansions=50, grasp_starts=4, contact_share=0.9)
-"""Settings of new searches, whatever method found the plan: many short ones that look for contact."""
+RESTART = replace(
+    PRESETS["fast"], method="Rnd+FPR", max_expansions=50, grasp_starts=4, contact_share=0.9, subgoals_per_object=20
+)
+"""Settings of new searches, whatever method found the plan: many short and broad ones that look for contact."""
 
 SPARE = 2
 """Pick-places that the plan of a new search may have more than the best route; local search drops them."""
@@ -40,7 +42,7 @@ SPARE = 2
 MUCH_SHORTER = 0.8
 """Share of the best route's length below which a route with more pick-places is kept: it may yet lose them."""
 
-SHARES_OF_LENGTH = (1.0, 0.5)
+SHARES_OF_LENGTH = (1.0, 0.5, 0.5)
 """How long the plan of a new search may be, as shares of the best route's length: a way much shorter that is hard to find
 is found sooner where long ways are not tried."""
 
