@@ -4,6 +4,7 @@ import functools
 import importlib.metadata
 import json
 import platform
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -22,37 +23,27 @@ def run_recorded(trial: Trial) -> TrialRow:
     started = datetime.now(UTC)
     outcome = trial.run()
     plan = outcome.plan
-    return _row(
-        trial,
-        status=plan.status,
-        verified=outcome.verified,
-        time_s=plan.time_s,
-        path_length_m=plan.path_length if plan.solved else None,
-        pick_places=plan.pick_places if plan.solved else None,
+    row = replace(
+        _row(trial, plan.status, started, datetime.now(UTC), plan.time_s),
         counters=json.dumps(dict(plan.counters)),
         message=_message(outcome),
-        plan=packed(plan_document(plan)) if plan.solved else None,
-        started=started,
-        finished=datetime.now(UTC),
+    )
+    if not plan.solved:
+        return row
+    return replace(
+        row,
+        verified=outcome.verified,
+        path_length_m=plan.path_length,
+        pick_places=plan.pick_places,
+        plan=packed(plan_document(plan)),
     )
 
 
 def failed_row(trial: Trial, failure: Failure) -> TrialRow:
     """The row of a trial that was stopped, crashed or raised."""
     finished = datetime.now(UTC)
-    return _row(
-        trial,
-        status=Status(failure.kind),
-        verified=None,
-        time_s=failure.time_s,
-        path_length_m=None,
-        pick_places=None,
-        counters="{}",
-        message=failure.message,
-        plan=None,
-        started=finished - timedelta(seconds=failure.time_s),
-        finished=finished,
-    )
+    started = finished - timedelta(seconds=failure.time_s)
+    return replace(_row(trial, Status(failure.kind), started, finished, failure.time_s), message=failure.message)
 
 
 def plan_of(row: TrialRow) -> Plan | None:
@@ -67,20 +58,8 @@ def plan_of(row: TrialRow) -> Plan | None:
     return plan_from_document(unpacked(row.plan, where), where)
 
 
-def _row(
-    trial: Trial,
-    *,
-    status: Status,
-    verified: bool | None,
-    time_s: float,
-    path_length_m: float | None,
-    pick_places: int | None,
-    counters: str,
-    message: str | None,
-    plan: bytes | None,
-    started: datetime,
-    finished: datetime,
-) -> TrialRow:
+def _row(trial: Trial, status: Status, started: datetime, finished: datetime, time_s: float) -> TrialRow:
+    """The row of a trial without a plan."""
     return TrialRow(
         key=trial.key,
         scene=trial.scene.name,
@@ -90,13 +69,13 @@ def _row(
         settings=json.dumps(trial.method.document, sort_keys=True),
         settings_hash=trial.method.hash,
         status=status.value,
-        verified=verified,
+        verified=None,
         time_s=time_s,
-        path_length_m=path_length_m,
-        pick_places=pick_places,
-        counters=counters,
-        message=message,
-        plan=plan,
+        path_length_m=None,
+        pick_places=None,
+        counters="{}",
+        message=None,
+        plan=None,
         versions=_versions(),
         machine=_machine(),
         started=started.isoformat(timespec="milliseconds"),

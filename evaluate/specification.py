@@ -34,12 +34,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator
 
-from converter.formats import yaml_text
 from converter.formats.body_document import Name
 from evaluate.method_document import MethodDocument, Shared, methods_of
 from evaluate.names import require_distinct
 from evaluate.scene_source import Presets, Reading, SceneSourceDocument, read_sources
 from evaluate.study import Study
+from pcg import yaml_text
 from pcg.errors import InputError
 from pcg.files import read_text
 from pcg.validation import Document, validated

@@ -1,6 +1,6 @@
 """The trials of a study as a data frame, read in batches: all that tables and plots need of them, without the plans.
 
-This and `evaluate.scene_records` are the only readers of the database besides `evaluate.store`.
+Besides `evaluate.store` only what uses `reading` asks the database: this, `evaluate.scene_records`, `evaluate.report`.
 """
 
 import contextlib

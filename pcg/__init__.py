@@ -9,11 +9,10 @@ from pcg.compile_cache import provide_compile_cache
 from pcg.dependency import has_dependency
 from pcg.errors import InputError
 from pcg.frozen import FrozenTiles, read_frozen
-from pcg.generate import generate_random, generated_levels, random_levels
+from pcg.generate import generated_levels, random_levels
 from pcg.level import Level, Tile
 from pcg.level_set import (
     GeneratedLevel,
-    LevelSet,
     ManifestEntry,
     read_level_set,
     read_manifest,
@@ -35,7 +34,6 @@ __all__ = [
     "InputError",
     "Level",
     "LevelReport",
-    "LevelSet",
     "LevelSource",
     "LevelStatistics",
     "LevelsSummary",
@@ -51,7 +49,6 @@ __all__ = [
     "canonical",
     "content_hash",
     "format_level",
-    "generate_random",
     "generated_levels",
     "goal_crate_of",
     "has_dependency",

@@ -5,7 +5,6 @@ is spent: a share of the tiles for changes, a share of the tiles for steps. Budg
 they always belong to the size at hand.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -82,10 +81,6 @@ class Beginning:
     maps: TileArray
     frozen: TileArray
     controls: FloatArray
-
-
-Beginner = Callable[[np.random.Generator, int], Beginning]
-"""Draws the beginning of n episodes."""
 
 
 def random_maps(rng: np.random.Generator, controls: FloatArray, settings: EpisodeSettings) -> TileArray:

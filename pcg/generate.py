@@ -5,12 +5,11 @@ The source is the random baseline or a trained policy; see `pcg.request.LevelSou
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from itertools import islice
 
 from pcg.errors import InputError
-from pcg.level_set import GeneratedLevel, LevelSet
+from pcg.level_set import GeneratedLevel
 from pcg.random_source import RandomSource
 from pcg.request import LevelSource, Rejection, Request
 from pcg.symmetry import content_hash
@@ -72,23 +71,6 @@ def random_levels(
 ) -> Iterator[GeneratedLevel]:
     """Random levels without end; see `generated_levels`."""
     return generated_levels(RandomSource(), request or Request(), seed, max_attempts=max_attempts)
-
-
-def generate_random(
-    count: int, seed: int, request: Request | None = None, progress: Callable[[int], None] | None = None
-) -> LevelSet:
-    """The first `count` of `random_levels`; `progress` is called with the number of finished levels.
-
-    Raises:
-        ValueError: the seed is negative.
-        InputError: no level was found.
-    """
-    levels = []
-    for generated in islice(random_levels(seed, request), count):
-        levels.append(generated)
-        if progress is not None:
-            progress(len(levels))
-    return LevelSet(tuple(levels))
 
 
 def _given_up(rejected: Counter[str]) -> str:

@@ -4,7 +4,6 @@
 fields. XSB cannot say which crate has to reach the goal, the manifest can: whoever reads the levels gets it from there.
 """
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -58,21 +57,6 @@ class GeneratedLevel:
     steps: int = 0
     weights_hash: str | None = None
     split: Split | None = None
-
-
-@dataclass(frozen=True)
-class LevelSet:
-    """Generated levels in order."""
-
-    levels: tuple[GeneratedLevel, ...]
-
-    @property
-    def rejected(self) -> Mapping[str, int]:
-        """Attempts thrown away, by reason, over all levels."""
-        total: Counter[str] = Counter()
-        for generated in self.levels:
-            total.update(generated.rejected)
-        return dict(total)
 
 
 class ManifestEntry(Document):

@@ -16,10 +16,10 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from converter.formats import yaml_text
 from converter.formats.body_document import Name, Number
 from converter.plan import Subgoal
 from converter.shape import FloatArray
+from pcg import yaml_text
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
 from pcg.validation import Document, validated

@@ -11,10 +11,10 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from converter.formats import yaml_text
 from converter.formats.body_document import BodyDocument, Length, Name, Number, Radius, from_body, short, to_body
 from converter.scene import Agent, Goal, Scene
 from converter.shape import FloatArray
+from pcg import yaml_text
 from pcg.errors import InputError
 from pcg.files import read_text, write_text
 from pcg.validation import Document, PlainValues, validated

@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 
-from converter.formats import yaml_text
 from converter.formats.json_schema import PLAN_FILE, SCENE_FILE, plan_schema, scene_schema, write_schemas
 from converter.formats.scene_yaml import from_document, to_document
 from converter.plan import Plan, plan_document, plan_from_document
 from converter.scene import Scene
+from pcg import yaml_text
 from pcg.errors import InputError
 
 DATA = Path(__file__).parents[2] / "data"

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from converter.formats import yaml_text
 from converter.formats.scene_yaml import (
     MAX_BYTES,
     from_document,
@@ -20,6 +19,7 @@ from converter.formats.scene_yaml import (
 )
 from converter.scene import Agent, Body, Goal, Scene
 from converter.shape import Part
+from pcg import yaml_text
 from pcg.errors import InputError
 
 BOX = Part.box((0.2, 0.2), 0.02)

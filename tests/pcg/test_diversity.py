@@ -1,15 +1,15 @@
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, islice
 
 import numpy as np
 import pytest
 
 from pcg.diversity import Descriptors, goal_cell_entropy, mean_hamming_distance
-from pcg.generate import generate_random
+from pcg.generate import random_levels
 from pcg.level import Level
 from pcg.symmetry import symmetries
 
-LEVELS = [generated.level for generated in generate_random(12, seed=5).levels]
+LEVELS = [generated.level for generated in islice(random_levels(5), 12)]
 
 
 def test_hamming_distance_is_that_of_pairs():

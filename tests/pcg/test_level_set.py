@@ -1,12 +1,13 @@
 import json
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from pcg.errors import InputError
-from pcg.generate import generate_random
+from pcg.generate import random_levels
 from pcg.level import Level
 from pcg.level_set import GeneratedLevel, read_level_set, read_manifest, write_level_set
 from pcg.metrics import LevelStatistics
@@ -21,7 +22,7 @@ GENERATED = GeneratedLevel(LEVEL, solve(LEVEL), "m3", 5, "narrow", {"pushes": 8.
 
 def test_a_level_set_is_read_back_as_written(tmp_path: Path):
     """Folder and XSB file give the same levels, with names and goal crates."""
-    levels = generate_random(5, seed=1).levels
+    levels = tuple(islice(random_levels(1), 5))
     write_level_set(tmp_path / "set", levels)
     expected = [generated.level for generated in levels]
     assert read_level_set(tmp_path / "set") == expected

@@ -7,7 +7,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converter.formats import yaml_text
+from pcg import yaml_text
 from pcg.errors import InputError
 
 SCALARS = (
