@@ -54,7 +54,7 @@ def storyboard_drawing(scene: Scene, plan: Plan, *, theme: Theme = PAPER) -> Dra
 
 def _grasp_frame(scene: Scene, step: Step, goals: FloatArray, index: int, theme: Theme) -> Drawing:
     frame = _frame(scene, step.positions, step.segment.path[0], goals, theme)
-    assert step.carried is not None  # noqa: S101 - only carries come here
+    assert step.carried is not None  # noqa: S101  # only carries come here
     color = object_color(scene, scene.objects[step.carried], theme)
     width, unit = theme.carry_width * frame.unit, frame.unit
     way = step.segment.path + step.offset

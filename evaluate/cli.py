@@ -51,7 +51,7 @@ BROKEN_PIPE = 141
 """What a shell reports of a program that a closed pipe ended: 128 + SIGPIPE."""
 
 
-class _ClosedPipe(Exception):  # noqa: N818 - no error
+class _ClosedPipe(Exception):  # noqa: N818  # no error
     """Whoever reads stdout has stopped."""
 
 
@@ -71,7 +71,7 @@ class _Commands(typer.core.TyperGroup):
             status = super().main(*args, **{**kwargs, "standalone_mode": False})
             sys.stdout.flush()
         except ValueError as error:
-            from pcg.errors import InputError  # noqa: PLC0415 - takes half a second, which help does not need
+            from pcg.errors import InputError  # noqa: PLC0415  # takes half a second, which help does not need
 
             if not isinstance(error, InputError):
                 raise
@@ -97,7 +97,7 @@ class _Commands(typer.core.TyperGroup):
 
 
 def _fail(message: str) -> NoReturn:
-    from pcg.printable import one_line  # noqa: PLC0415 - as above
+    from pcg.printable import one_line  # noqa: PLC0415  # as above
 
     typer.echo(f"error: {one_line(message)}", err=True)
     sys.exit(BAD_INPUT)
@@ -124,7 +124,7 @@ def manipuzzle(
 ) -> None:
     """Generate, convert, check, solve and evaluate sequential manipulation puzzles."""
     if version:
-        from importlib.metadata import version as version_of  # noqa: PLC0415 - slow, and seldom needed
+        from importlib.metadata import version as version_of  # noqa: PLC0415  # slow, and seldom needed
 
         typer.echo(version_of("manipuzzle"))
     elif context.invoked_subcommand is None:

@@ -129,7 +129,7 @@ def _judge_level(level: Level) -> Verdict:
 
 
 def _judge_scene(scene: Scene) -> Verdict:
-    from converter.preview import check_scene  # noqa: PLC0415 - it loads a physics engine, which only sheets need
+    from converter.preview import check_scene  # noqa: PLC0415  # it loads a physics engine, which only sheets need
 
     found = check_scene(scene)
     return Verdict("valid" if found.valid else found.problems[0].message, good=found.valid)

@@ -114,7 +114,7 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
         episodes: The state: a batch of one.
     """
 
-    metadata = {"render_modes": ["ansi"], "render_fps": 4}  # noqa: RUF012 - Gymnasium's own declaration is no ClassVar
+    metadata = {"render_modes": ["ansi"], "render_fps": 4}  # noqa: RUF012  # Gymnasium's own declaration is no ClassVar
 
     def __init__(
         self,

@@ -74,7 +74,7 @@ def draw_curves(path: Path, runs: Mapping[str, Sequence[CurveRow]], window: int 
     Raises:
         InputError: the file cannot be written.
     """
-    from matplotlib.figure import Figure  # noqa: PLC0415 - loaded when something is drawn
+    from matplotlib.figure import Figure  # noqa: PLC0415  # loaded when something is drawn
 
     figure = Figure(figsize=(10, 3.2), layout="constrained", dpi=120)
     panels = (("requests met", "success"), ("solvable levels", "valid"), ("optimal pushes", "pushes"))

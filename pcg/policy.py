@@ -130,7 +130,7 @@ def load_policy(path: Path) -> Policy:
     options.log_severity_level = 4
     try:
         session = onnxruntime.InferenceSession(weights, options, providers=["CPUExecutionProvider"])
-    except Exception as error:  # noqa: BLE001 - onnxruntime has many kinds, none of them documented
+    except Exception as error:  # noqa: BLE001  # onnxruntime has many kinds, none of them documented
         raise InputError(str(path), f"not an ONNX model: {str(error).splitlines()[0]}") from None
     text = session.get_modelmeta().custom_metadata_map.get(METADATA_KEY)
     if text is None:
@@ -204,7 +204,7 @@ def policy_levels(policy: Policy, request: Request, rng: np.random.Generator, ba
             next_number += 1
 
 
-def _attempt(episodes: Episodes, index: int, met: bool) -> Attempt:  # noqa: FBT001 - a field of the result
+def _attempt(episodes: Episodes, index: int, met: bool) -> Attempt:  # noqa: FBT001  # a field of the result
     statistics = episodes.statistics[index]
     level, rejection = None, None
     if episodes.is_valid()[index]:

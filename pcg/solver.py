@@ -91,7 +91,7 @@ def solve(
         ValueError: the level has not exactly one player, has no target, or `goal_crate` is no crate.
     """
     # Numba takes a second to load: reading and writing levels should not wait for it.
-    from pcg import solver_kernel as kernel  # noqa: PLC0415
+    from pcg import solver_kernel as kernel  # noqa: PLC0415  # see above
 
     goal_crate = level.goal_crate if goal_crate is None else goal_crate
     if goal_crate is not None and goal_crate not in level.crates:

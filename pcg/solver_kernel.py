@@ -123,7 +123,7 @@ def _bound(board: Board, crates: Int16Array, goal: int) -> int:
 
 @njit(cache=True)
 def _is_solved(board: Board, crates: Int16Array, goal: int) -> bool:
-    if goal != 0 and goal != board.first_target:  # noqa: PLR1714 - tuples of two types of integers are not compiled
+    if goal != 0 and goal != board.first_target:  # noqa: PLR1714  # tuples of two types of integers are not compiled
         return False
     covered = 0
     for crate in crates:
@@ -262,7 +262,7 @@ def _path(parents: Int32Array, pushed: Int16Array, steps: Int16Array, index: int
 
 
 @njit(cache=True)
-def fewest_pushes(  # noqa: C901, PLR0912, PLR0915 - one compiled loop over arrays that it alone grows
+def fewest_pushes(  # noqa: C901, PLR0912, PLR0915  # one compiled loop over arrays that it alone grows
     board: Board, player: int, crates: Int16Array, goal: int, max_states: int
 ) -> tuple[int, int, Int32Array]:
     """A* over pushes.
@@ -401,7 +401,7 @@ def _write_walk_lengths(
 
 
 @njit(cache=True)
-def fewest_moves(  # noqa: C901, PLR0915 - as above
+def fewest_moves(  # noqa: C901, PLR0915  # as above
     board: Board, player: int, crates: Int16Array, goal: int, max_states: int
 ) -> tuple[int, int, Int32Array]:
     """Dijkstra's algorithm over pushes with the walks before them as cost; arguments and result as `fewest_pushes`."""

@@ -154,7 +154,7 @@ def edit(
             row[_column_of(before)] -= 1
         if after != FLOOR:
             row[_column_of(after)] += 1
-        if before == WALL or after == WALL:  # noqa: PLR1714 - a tuple of two types of integers is not compiled
+        if before == WALL or after == WALL:  # noqa: PLR1714  # a tuple of two types of integers is not compiled
             _update_regions(tiles_of_map, i, j, row, scratch)
         _judge(tiles_of_map, row, judge, scratch)
 

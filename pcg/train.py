@@ -301,7 +301,7 @@ def _read_checkpoint(path: Path) -> Mapping[str, Any] | None:
         return None
     try:
         checkpoint: Mapping[str, Any] = torch.load(path, weights_only=True)
-    except Exception as error:  # noqa: BLE001 - torch has no type of its own for files that it cannot read
+    except Exception as error:  # noqa: BLE001  # torch has no type of its own for files that it cannot read
         raise InputError(str(path), f"not a checkpoint: {str(error).splitlines()[0]}") from None
     if not isinstance(checkpoint, dict) or checkpoint.keys() != {"steps", "policy", "optimizer"}:
         raise InputError(str(path), "not a checkpoint: steps, policy and optimizer are needed")

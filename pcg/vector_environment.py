@@ -30,7 +30,7 @@ class SokobanVectorEnvironment(VectorEnv[Observation, IntArray, npt.NDArray[Any]
         episodes: The state of all environments.
     """
 
-    metadata = {"autoreset_mode": AutoresetMode.SAME_STEP}  # noqa: RUF012 - Gymnasium's own declaration is no ClassVar
+    metadata = {"autoreset_mode": AutoresetMode.SAME_STEP}  # noqa: RUF012  # Gymnasium's own declaration is no ClassVar
 
     def __init__(
         self,
@@ -69,7 +69,7 @@ class SokobanVectorEnvironment(VectorEnv[Observation, IntArray, npt.NDArray[Any]
             InputError: the request does not fit to the environment.
         """
         if isinstance(seed, list):
-            raise ValueError("the batch has one generator and takes one seed")  # noqa: TRY004 - a value, as documented
+            raise ValueError("the batch has one generator and takes one seed")  # noqa: TRY004  # a value, as documented
         super().reset(seed=seed)
         self._options = options or {}
         self._begin(np.arange(self.num_envs))

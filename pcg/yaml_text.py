@@ -43,9 +43,9 @@ class Flow(dict[str, Any]):
 
 
 class _Loader(_BaseLoader):
-    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - overrides PyYAML's class attribute
+    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012  # overrides PyYAML's class attribute
 
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:  # noqa: FBT001, FBT002 - PyYAML's signature
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:  # noqa: FBT001, FBT002  # PyYAML's signature
         seen = set()
         for key, _ in node.value:
             if not isinstance(key, yaml.ScalarNode):
@@ -89,7 +89,7 @@ def parse(text: str, where: str) -> Any:
     """
     try:
         _require_plain(text, where)
-        return yaml.load(text, Loader=_Loader)  # noqa: S506 - a safe loader, with fewer types than the standard one
+        return yaml.load(text, Loader=_Loader)  # noqa: S506  # a safe loader, with fewer types than the standard one
     except yaml.MarkedYAMLError as error:
         line = _line(error.problem_mark or error.context_mark)
         raise InputError(f"{where}, line {line}", f"not a YAML file: {error.problem or error.context}") from None

@@ -153,7 +153,7 @@ def test_every_library_is_declared():
 def test_importing_is_light(module: str, absent: str):
     """Libraries are loaded when they are used, so that programs start fast and need no graphics or learning."""
     script = f"import sys, {module}; print(*sorted(set(sys.modules) & set({absent.split()!r})))"
-    found = subprocess.run(  # noqa: S603 - our own interpreter with our own script
+    found = subprocess.run(  # noqa: S603  # our own interpreter with our own script
         [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert found.stdout.split() == []

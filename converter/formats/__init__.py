@@ -8,19 +8,19 @@ from pcg.errors import InputError
 
 
 def _read_rai_g(path: Path) -> Scene:
-    from converter.formats.rai_g import read_rai_g  # noqa: PLC0415 - most programs never read a .g file
+    from converter.formats.rai_g import read_rai_g  # noqa: PLC0415  # most programs never read a .g file
 
     return read_rai_g(path)
 
 
 def _write_rai_g(path: Path, scene: Scene) -> None:
-    from converter.formats.rai_g_export import write_rai_g  # noqa: PLC0415 - most programs never write a .g file
+    from converter.formats.rai_g_export import write_rai_g  # noqa: PLC0415  # most programs never write a .g file
 
     write_rai_g(path, scene)
 
 
 def _write_mjcf(path: Path, scene: Scene) -> None:
-    from converter.formats.mjcf import write_mjcf  # noqa: PLC0415 - most programs never write a model
+    from converter.formats.mjcf import write_mjcf  # noqa: PLC0415  # most programs never write a model
 
     write_mjcf(path, scene)
 

@@ -36,8 +36,8 @@ def run(
     """
     require_choice("--representation", representation, list(REPRESENTATIONS))
     require_learning()
-    from pcg.episodes import EpisodeSettings  # noqa: PLC0415 - together with torch, below
-    from pcg.train import PICTURE_FILE, TrainingSettings, train  # noqa: PLC0415 - torch may be missing
+    from pcg.episodes import EpisodeSettings  # noqa: PLC0415  # together with torch, below
+    from pcg.train import PICTURE_FILE, TrainingSettings, train  # noqa: PLC0415  # torch may be missing
 
     require_writable(out)
     settings = TrainingSettings(episode=EpisodeSettings(representation, rows, columns))

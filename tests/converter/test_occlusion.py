@@ -37,7 +37,7 @@ def box(y: float, edge_radius: float = 0.0, z: float = 0.1) -> Body:
 @pytest.mark.parametrize(
     ("y", "expected"), [(0.0, True), (0.199, True), (-0.199, True), (0.2, False), (-0.2, False), (0.3, False)]
 )
-def test_a_body_hides_what_its_interior_covers(y: float, expected: bool, tall: bool):  # noqa: FBT001 - pytest passes by name
+def test_a_body_hides_what_its_interior_covers(y: float, expected: bool, tall: bool):  # noqa: FBT001  # pytest passes by name
     """Walls and other objects block; a line that only touches an edge is free."""
     assert occluded(scene(box(y), tall=tall)) is expected
 

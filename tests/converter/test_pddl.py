@@ -21,9 +21,9 @@ def parsed(text: str) -> list[Expression]:
     """The expressions of a PDDL text as nested lists, lower case, without comments."""
     stack: list[list[Expression]] = [[]]
     for token in re.findall(r"[()]|[^\s()]+", re.sub(r";[^\n]*", "", text).lower()):
-        if token == "(":  # noqa: S105 - no password
+        if token == "(":  # noqa: S105  # no password
             stack.append([])
-        elif token == ")":  # noqa: S105 - no password
+        elif token == ")":  # noqa: S105  # no password
             stack[-2].append(stack.pop())
         else:
             stack[-1].append(token)

@@ -92,7 +92,7 @@ def test_valid_scene():
 
 
 @pytest.mark.parametrize(("overlap", "valid"), [(0.0, True), (0.9e-3, True), (1.1e-3, False)])
-def test_overlap_beyond_the_tolerance(overlap: float, valid: bool):  # noqa: FBT001 - a column of the table
+def test_overlap_beyond_the_tolerance(overlap: float, valid: bool):  # noqa: FBT001  # a column of the table
     """Penetration up to the tolerance is touching; more is reported with the two bodies."""
     scene = with_agent(room(body("block", 0, 0), tolerance=1e-3), 0, -0.4 + overlap)
     if valid:
@@ -122,7 +122,7 @@ def test_overlaps_among_objects():
 
 
 @pytest.mark.parametrize(("z", "valid"), [(0.3, True), (0.29, False)])
-def test_bodies_at_different_heights_do_not_collide(z: float, valid: bool):  # noqa: FBT001 - a column of the table
+def test_bodies_at_different_heights_do_not_collide(z: float, valid: bool):  # noqa: FBT001  # a column of the table
     """A beam that rests on an object is no overlap, and the engine moves neither."""
     assert check_scene(room(body("beam", 1.1, -1, z=z))).valid is valid
 

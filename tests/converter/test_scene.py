@@ -37,7 +37,7 @@ def test_cores_are_turned_counter_clockwise(body: Body):
 
 
 @pytest.mark.parametrize(("x", "y", "inside"), [(0, 0, True), (0.1, 0.05, True), (0.1001, 0, False), (0, -0.06, False)])
-def test_the_border_of_the_goal_belongs_to_it(x: float, y: float, inside: bool):  # noqa: FBT001 - pytest passes by name
+def test_the_border_of_the_goal_belongs_to_it(x: float, y: float, inside: bool):  # noqa: FBT001  # pytest passes by name
     """Closed in x and y."""
     assert SCENE.goal.contains(np.array([x, y])) is inside
 

@@ -27,7 +27,7 @@ def drawing(*items: Item) -> Drawing:
 
 def parsed(*items: Item) -> ET.Element:
     """The root of the file of 200 px that shows `items`: 100 px a metre."""
-    return ET.fromstring(svg_text(drawing(*items), 200))  # noqa: S314 - our own text
+    return ET.fromstring(svg_text(drawing(*items), 200))  # noqa: S314  # our own text
 
 
 def elements(root: ET.Element, name: str) -> list[ET.Element]:
@@ -110,7 +110,7 @@ def test_a_repeated_drawing_is_defined_once():
 def test_any_text_is_text(text: str, tmp_path: Path):
     """Labels and titles are never markup, and what XML cannot hold is replaced."""
     write_svg(tmp_path / "a.svg", drawing(Label(text, np.zeros(2), 0.2, BLACK)), 100, title=text)
-    root = ET.parse(tmp_path / "a.svg").getroot()  # noqa: S314 - our own text
+    root = ET.parse(tmp_path / "a.svg").getroot()  # noqa: S314  # our own text
     kept = re.sub("[\x00-\x08\ud800]", "\ufffd", text)
     assert [element.text for name in ("title", "text") for element in elements(root, name)] == [kept, kept]
     assert elements(root, "script") == []

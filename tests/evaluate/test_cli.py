@@ -90,7 +90,7 @@ def test_solve_writes_a_plan_that_verify_accepts(run: Run, folder: Path):
     solved = run("solve", "room.yaml", "--out", "plans", "--seed", "3", "--json")
     assert solved.exit_code == 0
     (result,) = document(solved)["results"]
-    assert result["plan"] == os.path.join("plans", "room-Rnd+FPR-3.json")  # noqa: PTH118 - as printed
+    assert result["plan"] == os.path.join("plans", "room-Rnd+FPR-3.json")  # noqa: PTH118  # as printed
     plan = read_plan(folder / result["plan"])
     assert result == {
         "scene": "room",
@@ -371,7 +371,7 @@ def test_version_and_bare_call(run: Run):
 def program(*arguments: str, **options: Any) -> subprocess.Popen[str]:
     """Starts the program as a user would."""
     command = [sys.executable, "-c", "from evaluate.cli import main; main()", *arguments]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, **options)  # noqa: S603 - our own program
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, **options)  # noqa: S603  # our own program
 
 
 def test_a_closed_pipe_is_no_error(folder: Path):

@@ -19,7 +19,7 @@ from pcg.errors import InputError
 
 distributed = pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
 
-from evaluate.cluster import run_on_cluster  # noqa: E402 - needs the library above
+from evaluate.cluster import run_on_cluster  # noqa: E402  # needs the library above
 
 SMOKE = Path(__file__).parents[2] / "data" / "studies" / "smoke.yaml"
 
@@ -55,7 +55,7 @@ def test_the_rows_are_those_of_a_local_run(tmp_path: Path, address: str):
 @pytest.mark.slow
 def test_limits_hold_and_lost_workers_are_replaced(tmp_path: Path, address: str):
     """Overruns and crashes are rows; a trial whose Dask worker is killed is run again on another; none is lost."""
-    import stub_planners  # noqa: PLC0415 - found only now
+    import stub_planners  # noqa: PLC0415  # found only now
 
     study = replace(read_study(SMOKE), seeds=tuple(range(7)))
     study = replace(study, scenes=study.scenes[:1], methods=study.methods[:1])

@@ -87,7 +87,7 @@ def number(folder: Path) -> int:
 def study(seconds: float) -> Iterator["subprocess.Popen[str]"]:
     """The program, running the study with trials of so many seconds in a group of its own."""
     command = [sys.executable, "-c", "from evaluate.cli import main; main()"]
-    with subprocess.Popen(  # noqa: S603 - our own program
+    with subprocess.Popen(  # noqa: S603  # our own program
         [*command, "study", "spec.yaml", "--out", "out", "--workers", "2", "--json"],
         env={**os.environ, "TRIAL_SECONDS": str(seconds)},
         stdout=subprocess.PIPE,

@@ -71,7 +71,7 @@ def test_the_disc_follows_every_path_in_the_puzzles(path: Path):
 
 
 @pytest.mark.parametrize("merge", [False, True])
-def test_converted_scenes_are_driven_too(merge: bool):  # noqa: FBT001 - a column of the table
+def test_converted_scenes_are_driven_too(merge: bool):  # noqa: FBT001  # a column of the table
     """Turned objects and merged walls; the goal-object can be pushed from the sides that the agent reaches."""
     (level,) = parse_levels(LEVEL, "level.xsb")
     scene = convert_level(level, ConversionSettings(merge_walls=merge, yaw_jitter=0.7, size_jitter=0.3, seed=1))

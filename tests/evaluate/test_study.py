@@ -34,7 +34,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Runner]:
     monkeypatch.syspath_prepend(Path(__file__).parent)
 
     def runner(study: Study, planner: str, seconds: float = 2.0, **options: object) -> StudySummary:
-        import stub_planners  # noqa: PLC0415 - found only now
+        import stub_planners  # noqa: PLC0415  # found only now
 
         job = stub_planners.job(getattr(stub_planners, planner), seconds)
         with TrialStore(tmp_path / "out") as store:

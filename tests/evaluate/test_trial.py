@@ -88,7 +88,7 @@ def test_scenes_stay_read_only_between_processes(small_room: Scene):
     """Otherwise every worker would compile the planner again, inside the time of its first trial."""
     trial = Trial(small_room, Method("Rnd+FPR", Settings()), 0)
     assert trial.key
-    scene = pickle.loads(pickle.dumps(trial)).scene  # noqa: S301 - our own bytes
+    scene = pickle.loads(pickle.dumps(trial)).scene  # noqa: S301  # our own bytes
     bodies = (*scene.walls, *scene.objects)
     arrays = [scene.bounds, scene.agent.position, scene.goal.position, scene.goal.size]
     arrays += [array for body in bodies for array in (body.position, *body.cores, *(p.core for p in body.parts))]

@@ -170,7 +170,7 @@ def wait_after_saying_pid(folder: str) -> None:
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_workers_end_with_their_coordinator(tmp_path: Path, how: signal.Signals):
     """However the coordinator ends, no process stays behind, even in the middle of a task."""
-    with subprocess.Popen(  # noqa: S603 - our own interpreter with our own script
+    with subprocess.Popen(  # noqa: S603  # our own interpreter with our own script
         [sys.executable, "-c", COORDINATOR.format(folder=str(tmp_path))],
         env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
         stderr=subprocess.DEVNULL,

@@ -65,4 +65,4 @@ def test_nobody_else_can_prepare_the_folder(nothing_writable: Path, kind: str):
 def test_folders_may_have_to_be_made(tmp_path: Path, name: str, *, writable: bool):
     """A folder can be written to if it, or the nearest one above it that exists, can."""
     (tmp_path / "file").write_text("")
-    assert compile_cache._can_write(tmp_path / name) is writable  # noqa: SLF001 - replaced in the other tests
+    assert compile_cache._can_write(tmp_path / name) is writable  # noqa: SLF001  # replaced in the other tests

@@ -43,7 +43,7 @@ def test_a_level_of_walls_has_no_region():
         ((2, 3), [], [(1, 2)], True),
     ],
 )
-def test_occlusion_by_hand(goal: Cell, walls: list[Cell], crates: list[Cell], hidden: bool):  # noqa: FBT001 - a parametrised value
+def test_occlusion_by_hand(goal: Cell, walls: list[Cell], crates: list[Cell], hidden: bool):  # noqa: FBT001  # a parametrised value
     """Seen from the upper left cell, interiors block the ray, corners do not."""
     is_wall = np.zeros((4, 4), dtype=np.bool_)
     for cell in walls:

@@ -113,6 +113,6 @@ def test_legal_moves_keep_walls_targets_and_the_number_of_crates(letters: list[s
         ("@.$", None, False),
     ],
 )
-def test_solved_levels(row: str, goal_crate: tuple[int, int] | None, solved: bool):  # noqa: FBT001 - a parametrised value
+def test_solved_levels(row: str, goal_crate: tuple[int, int] | None, solved: bool):  # noqa: FBT001  # a parametrised value
     """Every target is covered, and the first one in reading order by the goal crate if one is named."""
     assert is_solved(corridor(row, goal_crate)) == solved

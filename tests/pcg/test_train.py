@@ -21,7 +21,7 @@ pytestmark = pytest.mark.rl
 
 def small(name: str = "narrow", **settings: Any) -> Any:
     """Settings of a training of a few updates."""
-    from pcg.train import TrainingSettings  # noqa: PLC0415 - torch may be missing
+    from pcg.train import TrainingSettings  # noqa: PLC0415  # torch may be missing
 
     return TrainingSettings(
         episode=EpisodeSettings(name, 5, 6), n_envs=4, n_steps=32, batch_size=64, hidden=32, **settings
@@ -31,9 +31,9 @@ def small(name: str = "narrow", **settings: Any) -> Any:
 @pytest.mark.parametrize("name", REPRESENTATIONS)
 def test_the_exported_policy_is_the_trained_one(name: str, tmp_path: Path):
     """ONNX and torch give the same logits, also for observations that no episode shows."""
-    import torch  # noqa: PLC0415 - as above
+    import torch  # noqa: PLC0415  # as above
 
-    from pcg.train import train  # noqa: PLC0415 - as above
+    from pcg.train import train  # noqa: PLC0415  # as above
 
     settings = small(name)
     model = train(settings, 256, 0, tmp_path)
@@ -47,7 +47,7 @@ def test_the_exported_policy_is_the_trained_one(name: str, tmp_path: Path):
 
 def test_a_run_goes_on_where_it_stopped(tmp_path: Path):
     """Steps, processor time and the curve continue; weights are those of the checkpoint before they learn on."""
-    from pcg.train import train  # noqa: PLC0415 - as above
+    from pcg.train import train  # noqa: PLC0415  # as above
 
     first = train(small(), 256, 0, tmp_path, checkpoint_steps=128)
     before = {name: value.clone() for name, value in first.policy.state_dict().items()}
@@ -70,7 +70,7 @@ def test_a_run_goes_on_where_it_stopped(tmp_path: Path):
 
 def test_the_seed_decides(tmp_path: Path):
     """Two runs with one seed have the same weights, one with another seed has others."""
-    from pcg.train import train  # noqa: PLC0415 - as above
+    from pcg.train import train  # noqa: PLC0415  # as above
 
     for folder, seed in (("a", 1), ("b", 1), ("c", 2)):
         train(small(), 256, seed, tmp_path / folder)
@@ -81,7 +81,7 @@ def test_the_seed_decides(tmp_path: Path):
 
 def test_a_run_of_other_settings_is_not_continued(tmp_path: Path):
     """Another seed or another batch size needs another folder."""
-    from pcg.train import train  # noqa: PLC0415 - as above
+    from pcg.train import train  # noqa: PLC0415  # as above
 
     train(small(), 1, 0, tmp_path)
     for settings, seed in ((small(), 1), (small(learning_rate=1e-3), 0)):
@@ -102,7 +102,7 @@ class Harmful:
 
 def test_a_checkpoint_cannot_run_code(tmp_path: Path):
     """A checkpoint with anything but tensors and numbers is refused before anything in it is called."""
-    from pcg.train import train  # noqa: PLC0415 - as above
+    from pcg.train import train  # noqa: PLC0415  # as above
 
     train(small(), 1, 0, tmp_path)
     (tmp_path / "checkpoint.pt").write_bytes(pickle.dumps(Harmful(tmp_path / "harm")))
@@ -114,10 +114,10 @@ def test_a_checkpoint_cannot_run_code(tmp_path: Path):
 @pytest.mark.parametrize("name", REPRESENTATIONS)
 def test_the_golden_logits_are_live_ones(name: str):
     """Torch computes the golden logits of the committed weights from the layers of the ONNX file."""
-    import onnx  # noqa: PLC0415 - as above
-    import torch  # noqa: PLC0415 - as above
+    import onnx  # noqa: PLC0415  # as above
+    import torch  # noqa: PLC0415  # as above
 
-    from pcg.agents import policy_path  # noqa: PLC0415 - as above
+    from pcg.agents import policy_path  # noqa: PLC0415  # as above
 
     golden = json.loads((Path(__file__).parents[1] / "golden" / "policy-logits.json").read_text())[name]
     arrays = {

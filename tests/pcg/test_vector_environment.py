@@ -2,7 +2,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-import pcg.environment  # noqa: F401 - registers the environments
+import pcg.environment  # noqa: F401  # registers the environments
 from pcg.representation import REPRESENTATIONS
 from pcg.request import Request
 
