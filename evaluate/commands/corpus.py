@@ -71,7 +71,7 @@ def check(
 
 @app.command(short_help="Draw the expressive range of level sets.")
 def plot(
-    folders: Annotated[list[Path], typer.Argument(metavar="DIR", help="Level sets.")],
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR", help="Level sets to plot.")],
     *,
     out: Out,
     format_: Annotated[str, typer.Option("--format", metavar="NAME", help="svg, pdf or png.")] = "png",

@@ -46,8 +46,8 @@ def run(
     ] = "random",
     count: Annotated[int, typer.Option(metavar="N", min=1, help="Number of levels.")] = 10,
     seed: Seed = 0,
-    rows: Annotated[int | None, _asked("N", "Inner rows.", "10", min=1, max=100)] = None,
-    columns: Annotated[int | None, _asked("N", "Inner columns.", "10", min=1, max=100)] = None,
+    rows: Annotated[int | None, _asked("N", "Rows within the outer wall.", "10", min=1, max=100)] = None,
+    columns: Annotated[int | None, _asked("N", "Columns within the outer wall.", "10", min=1, max=100)] = None,
     crates: Annotated[int | None, _asked("N", "Crates of a level.", "2", min=1)] = None,
     targets: Annotated[int | None, _asked("N", "Targets of a level.", "1", min=1)] = None,
     min_pushes: Annotated[

@@ -25,7 +25,7 @@ def run(
     steps: Annotated[int, typer.Option(metavar="N", min=1, help="Steps in all; rounded up.")] = 5_000_000,
     seed: Seed = 0,
     rows: Annotated[int, typer.Option(metavar="N", min=2, max=50, help="Inner rows of its levels.")] = 10,
-    columns: Annotated[int, typer.Option(metavar="N", min=2, max=50, help="Inner columns.")] = 10,
+    columns: Annotated[int, typer.Option(metavar="N", min=2, max=50, help="Columns within the outer wall.")] = 10,
     json: Json = False,
 ) -> bool:
     """Train a policy by PPO on the CPU: {representation}.onnx, curve.png, checkpoints. Needs the extra rl.

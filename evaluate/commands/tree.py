@@ -29,7 +29,7 @@ def run(
     out: Out,
     method: ForwardSearch = "Rnd+FPR",
     seed: Seed = 0,
-    time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9)] = 60.0,
+    time_limit: Annotated[float, typer.Option(metavar="SECONDS", max=1e9, help="Planning time at most.")] = 60.0,
     settings: SettingsName = "fast",
     format_: Still = "png",
     theme: Theme = "paper",
