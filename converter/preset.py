@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from converter.formats.body_document import MAX_LENGTH
 from converter.scene import OUTER_WALL_PREFIX, Body, Scene
 from converter.shape import Part, denoised
 from pcg.errors import InputError
@@ -95,7 +96,9 @@ def with_preset(scene: Scene, name: str) -> Scene:
     """The scene in another geometry: agent radius, edge radii, inner faces of the outer walls, and tolerance.
 
     Straight edges of outlines stay where they are. Discs and capsules, and parts that are too thin for the edge radius
-    of the preset, are left alone. A scene without a preset is taken to have its outer walls at the border of the room.
+    of the preset, are left alone. A wall that stands for several cells is rounded as one: a conversion with the preset
+    would leave notches between its blocks, into which the agent can sink by less than the tolerance. A scene without a
+    preset is taken to have its outer walls at the border of the room.
 
     Raises:
         InputError: there is no such preset.
@@ -117,12 +120,11 @@ def with_tolerance(scene: Scene, tolerance: float) -> Scene:
     """The scene with another tolerance [m]; its preset keeps its name.
 
     Raises:
-        InputError: the tolerance is negative or not finite.
+        InputError: the tolerance is negative or larger than a file may hold.
     """
-    try:
-        return replace(scene, tolerance=tolerance)
-    except ValueError as error:
-        raise InputError("", str(error)) from None
+    if not 0 <= tolerance <= MAX_LENGTH:
+        raise InputError("tolerance", f"{tolerance} m must be from 0 to {MAX_LENGTH:g}")
+    return replace(scene, tolerance=tolerance)
 
 
 def _with_edge_radius(body: Body, edge_radius: float) -> Body:

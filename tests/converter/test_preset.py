@@ -2,6 +2,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -147,6 +148,33 @@ def test_a_corridor_of_one_cell_has_the_stated_clearance():
     """12.5 mm on each side in `clear`, none in `published`."""
     assert 0.4 / 2 - CLEAR.agent_radius == pytest.approx(0.0125)
     assert 0.4 / 2 - PUBLISHED.agent_radius == 0
+
+
+def filled(scene: Scene) -> shapely.Geometry:
+    """What the blocks of a scene fill."""
+    blocks = [wall for wall in scene.walls if wall.name.startswith("block_")]
+    return shapely.union_all(
+        [
+            shapely.buffer(shapely.Polygon(core + wall.position[:2]), part.edge_radius, quad_segs=64)
+            for wall in blocks
+            for core, part in zip(wall.cores, wall.parts, strict=True)
+        ]
+    )
+
+
+def test_merged_walls_differ_from_blocks_by_notches_only():
+    """Rounded as one, walls fill the notches between rounded blocks, where the agent sinks in by less than the tolerance."""
+    is_wall = np.array([[1, 1, 1, 0], [1, 1, 0, 0], [0, 0, 0, 1]], dtype=np.bool_)
+    cells = Level.of(is_wall, players=[(2, 0)], crates=[(2, 1)], targets=[(2, 2)])
+    merged = with_preset(convert_level(cells, ConversionSettings(merge_walls=True)), "published")
+    blocks = convert_level(cells, ConversionSettings(preset="published"))
+    assert sum(len(wall.parts) for wall in merged.walls) < sum(len(wall.parts) for wall in blocks.walls)
+    whole, pieces = filled(merged), filled(blocks)
+    assert whole.area > pieces.area
+    assert whole.buffer(1e-6).contains(pieces)
+    reach = PUBLISHED.agent_radius
+    near = pieces.buffer(reach + PUBLISHED.tolerance, quad_segs=256)
+    assert near.contains(whole.buffer(reach, quad_segs=256))
 
 
 def test_an_unknown_preset_is_refused():
