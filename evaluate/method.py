@@ -80,7 +80,18 @@ class OwnPlanner:
                 reference.load()
         # Nobody demonstrates a scene like this one, and no level is its source.
         method = "Rnd+R" if settings.generator in {"Hum", "Push"} else settings.method
-        OwnPlanner().plan(scene, replace(settings, method=method, improve_rounds=1), 0)
+        small = replace(settings, method=method, improve_rounds=1)
+        OwnPlanner().plan(scene, small, 0)
+        if not small.generator.startswith("MBTS"):
+            # Where the goal is occupied, an expansion has to propose subgoals and to score them.
+            OwnPlanner().plan(_with_occupied_goal(scene), replace(small, max_expansions=1), 0)
+
+
+def _with_occupied_goal(scene: Scene) -> Scene:
+    """The scene with its last object, which must not be the goal-object, in the middle of the goal."""
+    last = scene.objects[-1]
+    moved = replace(last, position=np.append(scene.goal.position, last.position[2]))
+    return replace(scene, objects=(*scene.objects[:-1], moved))
 
 
 @dataclass(frozen=True, eq=False)
