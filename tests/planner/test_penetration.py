@@ -177,6 +177,23 @@ def test_the_deepest_place_along_a_piece_is_exact(share: float):
     assert depth(agent, [[0.0, height]], triangle) == pytest.approx(expected, abs=1e-12)
 
 
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+@pytest.mark.parametrize("reverse", [1, -1])
+def test_the_deepest_place_lies_where_an_edge_between_the_ends_says(mirror: float, reverse: int):
+    """A disc crosses a tower with two roofs: deepest not half-way between its walls, but under the crossing of two.
+
+    At y = 0 the distances are 1 + x to the left wall, 1 - x to the right one, and to the roofs through (0, 0.8) and
+    (0, 0.6) with slopes -3/4 and -4/3 they are 0.64 - 0.6 x and 0.36 - 0.8 x: 1 + x = 0.36 - 0.8 x at x = -16/45.
+    """
+    corners = np.array([[-1, -5], [1, -5], [1, 0.6 - 4 / 3], [-12 / 35, 37 / 35], [-1, 1.55]]) * [mirror, 1]
+    tower = prism("tower", Part(corners[:: int(mirror)]), np.zeros(2))
+    agent = Prism.of_agent(Agent(np.zeros(2), 0.1))
+    path = np.array([[-3.0, 0.0], [3.0, 0.0]])[::reverse]
+    contact = deepest_contacts(agent, path, [tower], 0.0)["tower"]
+    assert contact.depth == pytest.approx(0.1 + 29 / 45)
+    assert contact.where == pytest.approx([-mirror * 16 / 45, 0.0])
+
+
 def test_gap_to_the_nearest_part():
     """Of several parts with their own radii the nearest outline decides."""
     parts = (Part(np.array([[0.0, 0.0]]), 0.3), Part(np.array([[1.0, 0.0]]), 0.1))
