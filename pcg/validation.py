@@ -69,9 +69,23 @@ def validated(model: type[Model], data: Any, where: str) -> Model:
         first, count = error.errors(include_url=False)[0], error.error_count()
         place = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in first["loc"]).lstrip(".")
         found = "" if first["type"] == "missing" else f" (found {_shortened(first['input'])})"
-        more = f"; {count - 1} more" if count > 1 else ""
-        problem = f"{place or 'document'}: {first['msg'].removeprefix('Value error, ')}{found}{more}"
+        more = f"; {count - 1} more problem{'s' if count > 2 else ''}" if count > 1 else ""
+        message = _PLAIN.get(first["type"], first["msg"].removeprefix("Value error, "))
+        problem = f"{place or 'document'}: {message}{found}{more}"
         raise InputError(where, problem) from None
+
+
+_PLAIN = {
+    "missing": "is missing",
+    "extra_forbidden": "there is no such field",
+    "tuple_type": "must be a list",
+    "list_type": "must be a list",
+    "dict_type": "must be a mapping",
+    "model_type": "must be a mapping",
+    "model_attributes_type": "must be a mapping",
+    "float_type": "must be a number",
+}
+"""Words for those of pydantic's errors that speak of Python; by the type of the error."""
 
 
 def _shortened(value: Any, length: int = 60) -> str:

@@ -13,16 +13,18 @@ In 2 to 4 a `Title:` line will do too. A line names one level only. A level with
 its number, counted from 1: `file-1`.
 """
 
+import codecs
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import takewhile
+from os.path import commonprefix
 from pathlib import Path
 
 import numpy as np
 
 from pcg.errors import InputError
-from pcg.files import read_text, write_text
+from pcg.files import read_bytes, write_text
 from pcg.grid import cells_of, reachable
 from pcg.level import Level, Tile, TileArray
 
@@ -60,7 +62,19 @@ def iter_levels(path: Path) -> Iterator[Level]:
     Raises:
         InputError: naming file and line, when that line is reached; see `parse_levels`.
     """
-    yield from _levels(read_text(path, max_bytes=MAX_CELLS), str(path))
+    yield from _levels(_decoded(read_bytes(path, max_bytes=MAX_CELLS)), str(path))
+
+
+def _decoded(data: bytes) -> str:
+    """Text as old collections have it too: in UTF-8, in UTF-16 with its mark, or else in Latin-1, for names of people."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        text = data.decode("utf-16", errors="replace")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def write_levels(path: Path, levels: Iterable[Level]) -> None:
@@ -180,7 +194,10 @@ def _level(block: _Block, where: str) -> Level:
 
 def _tiles(block: _Block, where: str) -> TileArray:
     """The (rows + 2, columns + 2) tiles of a block within a ring of floor."""
-    rows = [row.rstrip(" -_") for row in block.rows]
+    # Tabs in front of all rows alike are a margin, whatever their width.
+    margins = [row[: len(row) - len(row.lstrip(" \t"))] for row in block.rows]
+    margin = len(commonprefix(margins))  # noqa: RUF071  # of texts, not of paths
+    rows = [" " * margin + row[margin:].rstrip(" \t-_") for row in block.rows]
     columns = max(map(len, rows))
     if max(len(rows), columns) > MAX_SIDE:
         problem = f"the level has {len(rows)} x {columns} cells; at most {MAX_SIDE} x {MAX_SIDE} are read"
@@ -189,7 +206,8 @@ def _tiles(block: _Block, where: str) -> TileArray:
     for i, row in enumerate(rows):
         if unknown := set(row) - TILE_OF_CHARACTER.keys():
             column = min(map(row.index, unknown))
-            problem = f"column {column + 1} holds {row[column]!r}; allowed are # @ + $ * . and, for floor, space - _"
+            allowed = "use spaces" if row[column] == "\t" else "allowed are # @ + $ * . and, for floor, space - _"
+            problem = f"column {column + 1} holds {row[column]!r}; {allowed}"
             raise InputError(_at(where, block.line + i), problem)
         tiles[i + 1, 1 : len(row) + 1] = [TILE_OF_CHARACTER[character] for character in row]
     return tiles

@@ -132,7 +132,7 @@ def changed(field: str, value: Any) -> dict[str, Any]:
         ("walls.0.position", [1e5, 0, 0.2], "walls[0].position[0]"),
         ("walls.0.size", [2.1, 0, 0.4], "walls[0].size[1]"),
         ("walls.0.size", [2.1, 0.05, 0.4], "walls[0]: outwall_right: size 2.1 x 0.05 is smaller than two edge radii"),
-        ("walls.0.colour", [1, 1, 1], "walls[0].colour: Extra inputs are not permitted"),
+        ("walls.0.colour", [1, 1, 1], "walls[0].colour: there is no such field"),
         ("walls.0.height", 0.4, "walls[0]: polygon and parts need a height; with size it is the third number"),
         ("objects", [], "objects"),
         ("goal.object", "box", "goal.object 'box' is not an object; there are ['obj']"),

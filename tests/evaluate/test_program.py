@@ -109,7 +109,7 @@ time.sleep(600)
         ("pass", "stdout: not a JSON document: "),
         ("print('[]')", "stdout: document: "),
         ('print(\'{"status": "won"}\')', "stdout: status: Input should be 'solved'"),
-        ('print(\'{"status": "solved", "segments": [{}]}\')', r"stdout: segments\[0\].mode: Field required"),
+        ('print(\'{"status": "solved", "segments": [{}]}\')', r"stdout: segments\[0\].mode: is missing"),
         (
             'print(\'{"status": "solved", "segments": [{"mode": "move", "path": [[0, NaN]]}]}\')',
             r"stdout: segments\[0\].path\[0\]\[1\]: .*finite",

@@ -21,10 +21,10 @@ def test_good_documents_become_models():
 @pytest.mark.parametrize(
     ("document", "message"),
     [
-        ({"values": []}, r"file: name: Field required$"),
+        ({"values": []}, r"file: name: is missing$"),
         ({"name": "a", "values": [0, "x"]}, r"file: values\[1\]: .*\(found 'x'\)$"),
         ({"name": "a", "values": [float("inf")]}, r"file: values\[0\]: .*\(found inf\)$"),
-        ({"name": 1, "more": 2}, r"file: name: .*\(found 1\); 1 more$"),
+        ({"name": 1, "more": 2}, r"file: name: .*\(found 1\); 1 more problem$"),
         ([], r"file: document: .*\(found \[\]\)$"),
         ({"name": ["x\n" * 1000]}, r"file: name: [^\n]{,150}$"),
     ],

@@ -184,3 +184,21 @@ def test_levels_come_one_by_one(tmp_path: Path):
     assert next(levels).name == "levels-1"
     with pytest.raises(InputError, match=r"line 6: column 4 holds '\?'"):
         next(levels)
+
+
+def test_tabs_are_a_margin_only():
+    """In front of all rows alike, or behind them; elsewhere nobody knows how wide they are."""
+    plain = "######\n#@ $.#\n######\n"
+    (level,) = parse_levels("".join(f"\t{row}\t\n" for row in plain.splitlines()), "file.xsb")
+    np.testing.assert_array_equal(level.tiles, parse_levels(plain, "file.xsb")[0].tiles)
+    with pytest.raises(InputError, match=r"file.xsb: line 2: column 3 holds '\\t'; use spaces"):
+        parse_levels(plain.replace("@ ", "@\t"), "file.xsb")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+def test_old_encodings_are_read(tmp_path: Path, encoding: str):
+    """Titles of collections hold names of people, in whatever encoding was usual."""
+    file = tmp_path / "a.xsb"
+    file.write_bytes("; Ren\xe9\r\n######\r\n#@ $.#\r\n######".encode(encoding))
+    (level,) = read_levels(file)
+    assert level.name == "Ren\xe9"

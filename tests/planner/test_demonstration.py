@@ -59,12 +59,15 @@ def test_positions_of_each_object_in_order():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("scene: a\nsubgoals: []\n", "format: Field required"),
+        ("scene: a\nsubgoals: []\n", "format: is missing"),
         ("format: 2\nscene: a\nsubgoals: [{object: o, position: [0, 0]}]\n", "format: Input should be 1 (found 2)"),
         ("format: 1\nscene: a\nsubgoals: []\n", "subgoals: Tuple should have at least 1 item"),
-        ("format: 1\nscene: a\nsubgoals: [{object: o, position: [0]}]\n", "subgoals[0].position[1]: Field required"),
+        ("format: 1\nscene: a\nsubgoals: [{object: o, position: [0]}]\n", "subgoals[0].position[1]: is missing"),
         ("format: 1\nscene: a\nsubgoals: [{object: o, position: [0, .nan]}]\n", "subgoals[0].position[1]"),
-        ("format: 1\nscene: a\nsubgoals: [{object: o, position: [0, 0], x: 1}]\n", "subgoals[0].x: Extra inputs"),
+        (
+            "format: 1\nscene: a\nsubgoals: [{object: o, position: [0, 0], x: 1}]\n",
+            "subgoals[0].x: there is no such field",
+        ),
         ("format: 1\nscene: [\n", "line 3: not a YAML file"),
     ],
 )
