@@ -108,7 +108,7 @@ class _Space:
         return self.trees[key]
 
 
-class MotionPlanner:
+class RoutePlanner:
     """Finds the motions of carries; what one query computes, later ones reuse."""
 
     def __init__(self, problem: Problem) -> None:

@@ -23,7 +23,7 @@ import numpy as np
 
 from converter.scene import Scene
 from planner.assemble import segments_of, subgoals_of
-from planner.carries import MotionPlanner, Route, carries_of
+from planner.carries import Route, RoutePlanner, carries_of
 from planner.improve_moves import Moves
 from planner.problem import Problem
 from planner.result import PlanResult
@@ -99,7 +99,7 @@ class Improver:
         self._rng = rng
         self._should_stop = should_stop
         self._problem = Problem(scene)
-        self._motions = MotionPlanner(self._problem)
+        self._motions = RoutePlanner(self._problem)
         self._moves = Moves(self._problem, self._motions, rng)
         self._starts = (self._shaken, self._restarted, self._spliced)
 

@@ -1,6 +1,6 @@
 """Changes of a route that may make it better: another grasp, another placement, one carry less, another order.
 
-A move only proposes carries; whether they are possible, and how long the way is, `MotionPlanner` finds out.
+A move only proposes carries; whether they are possible, and how long the way is, `RoutePlanner` finds out.
 """
 
 from collections.abc import Callable, Iterable
@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from planner.carries import Carry, MotionPlanner, Route
+from planner.carries import Carry, Route, RoutePlanner
 from planner.improve_draws import Draws
 from planner.pick_place import PickPlace
 from planner.problem import Configuration, Problem
@@ -26,7 +26,7 @@ Carries = tuple[Carry, ...]
 class Moves:
     """Random changes of the routes of one problem."""
 
-    def __init__(self, problem: Problem, motions: MotionPlanner, rng: np.random.Generator) -> None:
+    def __init__(self, problem: Problem, motions: RoutePlanner, rng: np.random.Generator) -> None:
         self._problem = problem
         self._motions = motions
         self._rng = rng

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from pcg.errors import InputError
 from planner.mbts_settings import MbtsSettings
@@ -19,9 +19,11 @@ solution of the level that the scene was converted from.
 SOLVE_BY = ("pick-place", "MBTS", "MBTS-rrt")
 """Ways to attempt the original problem within the forward search."""
 
+PresetName = Literal["fast", "faithful"]
+
 _CHOICES = {
     "method": METHODS,
-    "preset": ("fast", "faithful"),
+    "preset": get_args(PresetName),
     "motion": MOTION_PLANNERS,
     "solve_by": SOLVE_BY,
 }
@@ -88,7 +90,7 @@ class Settings(MbtsSettings):
     """
 
     method: str = "Rnd+FPR"
-    preset: Literal["fast", "faithful"] = "fast"
+    preset: PresetName = "fast"
     time_limit: float = 60.0
     candidates: int = 100
     near_share: float = 0.5

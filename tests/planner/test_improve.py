@@ -12,7 +12,7 @@ from converter.formats import read_scene
 from converter.plan import Segment, Status, Subgoal, plan_document
 from converter.scene import Scene
 from planner import improve as improve_module
-from planner.carries import MotionPlanner, Route, carries_of
+from planner.carries import Route, RoutePlanner, carries_of
 from planner.improve import improve
 from planner.improve_draws import Draws
 from planner.improve_moves import Moves
@@ -141,7 +141,7 @@ def test_solve_improves_if_settings_say_so():
 def detour_route() -> tuple[Route, Moves]:
     """The detour with its motions, and moves for it."""
     problem = Problem(OPEN)
-    motions = MotionPlanner(problem)
+    motions = RoutePlanner(problem)
     route = motions.route(carries_of(problem, detour().segments))
     assert route is not None
     return route, Moves(problem, motions, np.random.default_rng(3))
