@@ -4,7 +4,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from evaluate.output import Progress
+from converter.plan import Status
+from evaluate.output import Progress, counted
 from evaluate.store import TrialRow
 from evaluate.study import Study
 
@@ -34,6 +35,7 @@ class StudyProgress:
         self._bar, self._study, self._clock = bar, study, clock
         self._left, self._all = study.size, _Tally()
         self._scenes: dict[str, _Tally] = {}
+        self._errors: dict[str, list[str]] = {}
         self._started = clock()
         self._shown = -REFRESH_S
         self._task = bar.add_task(study.name, total=study.size, study="")
@@ -48,10 +50,19 @@ class StudyProgress:
                 tally.run += 1
                 tally.solved += row.verified is True
                 tally.time_s += row.time_s
+            if row.status == Status.ERROR:
+                self._errors.setdefault(row.method, []).append(row.message or "")
         now = self._clock()
         if now - self._shown >= REFRESH_S or self._all.run == self._left:
             self._shown = now
             self._bar.update(self._task, total=self._left, completed=self._all.run, study=self.text())
+
+    def errors(self) -> list[str]:
+        """A line for each method of which trials ended with an error."""
+        return [
+            f"{method}: {counted(len(messages), 'trial')} ended with an error, the first: {messages[0]}"
+            for method, messages in self._errors.items()
+        ]
 
     def text(self) -> str:
         """Rate, number of solved trials, and the worst scene; empty before the first trial."""

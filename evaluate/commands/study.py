@@ -61,6 +61,8 @@ def run(
             raise InputError(
                 str(spec), f"{error}" + ("; memory_mb may be too small" if study.memory_mb else "")
             ) from None
+    for line in display.errors():
+        log(f"{line}; `manipuzzle trials {out} --status error` lists them")
     write_text(out / TABLE_FILE, study_table(study, summary.cells))
     totals = by_method(summary.cells)
     by_name = {method: totals.get(method, Cell()) for method in (m.name for m in study.methods)}

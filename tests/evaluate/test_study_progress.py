@@ -55,3 +55,14 @@ def test_trials_of_earlier_calls_are_no_progress(study: Study):
         shown.on_trial(row(study, 0, solved=True, time_s=1.0))
         (task,) = bar.tasks
         assert (task.total, task.completed) == (5, 1)
+
+
+def test_errors_are_told_by_method(study: Study):
+    """How many there were, and what the first one said; trials that end otherwise are none."""
+    with progress(FIELD) as bar:
+        shown = StudyProgress(bar, study)
+        shown.on_trial(replace(row(study, 0, solved=True, time_s=1.0), status="solved"))
+        assert shown.errors() == []
+        for message in ("no module 'mine'", "another"):
+            shown.on_trial(replace(row(study, 0, solved=False, time_s=1.0), message=message))
+        assert shown.errors() == ["m: 2 trials ended with an error, the first: no module 'mine'"]
