@@ -8,7 +8,7 @@ RL_INSTALLED := .venv-rl/.installed
 COMPILE := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-header --group dev
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-rl demo bench corpus corpus-check test test-rl lock dist install-check
+.PHONY: help setup setup-rl demo bench corpus corpus-check test test-rl fuzz lock dist install-check
 
 help:
 	@echo "make setup  install the locked dependencies and manipuzzle itself into .venv"
@@ -17,6 +17,7 @@ help:
 	@echo "make corpus  build data/corpus anew from the committed policies; corpus-check: build it elsewhere and compare"
 	@echo "make test   lint, types and tests: what CI runs"
 	@echo "make test-rl  the tests that need torch, in an environment of their own (.venv-rl)"
+	@echo "make fuzz   search for inputs that make a parser fail, FUZZ_SECONDS=60 each"
 	@echo "make lock   resolve the dependencies anew into the two lock files"
 	@echo "make dist   wheel and sdist into dist/; install-check: install the wheel elsewhere and use it there"
 
@@ -51,6 +52,19 @@ test: setup
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -n 2 -m "not rl"
+
+# The fuzzer lies in a folder of its own, so that setting up and testing need no download of it.
+FUZZERS := out/fuzz/site
+FUZZ_SECONDS ?= 60
+
+$(FUZZERS): pyproject.toml | setup
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --target $@ --group fuzz
+	touch $@
+
+fuzz: $(FUZZERS)
+	for parser in $$($(BIN)/python -c 'from tests.fuzz.parsers import PARSERS; print(*PARSERS)'); do \
+	  PYTHONPATH=$(FUZZERS) $(BIN)/python -m tests.fuzz.coverage_guided $$parser --seconds $(FUZZ_SECONDS) || exit 1; \
+	done
 
 # torch has an environment of its own, so that setting up and testing the rest stays small.
 setup-rl: $(RL_INSTALLED)

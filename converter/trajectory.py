@@ -21,6 +21,9 @@ from pcg.errors import InputError
 MAX_POSITIONS = 20_000_000
 """Most positions of agent and objects, over all rows, that a trajectory may have."""
 
+LARGEST = 1e6
+"""Largest speed, acceleration and time of a profile, and one over the smallest speed and acceleration."""
+
 NOTHING = -1
 """Stands for an object's index where none is held."""
 
@@ -40,12 +43,13 @@ class SpeedProfile:
     grasp_time: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.speed) and self.speed > 0):
-            raise InputError("speed", f"{self.speed} m/s must be positive")
-        if not self.acceleration > 0:
-            raise InputError("acceleration", f"{self.acceleration} m/s^2 must be positive")
-        if not (math.isfinite(self.grasp_time) and self.grasp_time >= 0):
-            raise InputError("grasp_time", f"{self.grasp_time} s must be >= 0")
+        if not 1 / LARGEST <= self.speed <= LARGEST:
+            raise InputError("speed", f"{self.speed} m/s must be from {1 / LARGEST:g} to {LARGEST:g}")
+        if not (1 / LARGEST <= self.acceleration <= LARGEST or self.acceleration == math.inf):
+            problem = f"{self.acceleration} m/s^2 must be from {1 / LARGEST:g} to {LARGEST:g}, or infinite"
+            raise InputError("acceleration", problem)
+        if not 0 <= self.grasp_time <= LARGEST:
+            raise InputError("grasp_time", f"{self.grasp_time} s must be from 0 to {LARGEST:g}")
 
     def durations(self, lengths: FloatArray) -> FloatArray:
         """Times [s] to drive straight pieces of these lengths (n,) [m]."""

@@ -19,6 +19,7 @@ from evaluate.scene_groups import Grouping
 from evaluate.statistics import FloatArray, solved_within, wilson_interval
 from evaluate.tables_success import success_counts
 from evaluate.trial_frame import names_in, planning_times
+from pcg.printable import printable
 
 MAX_BOXED_SCENES = 24
 """Scenes in the box plots; of more, those with the longest times are shown."""
@@ -197,5 +198,5 @@ def _thinned(seconds: FloatArray, shares: FloatArray) -> tuple[FloatArray, Float
 
 
 def _plain(text: str) -> str:
-    """Text without the dollar signs that would begin a formula."""
-    return text.replace("$", r"\$")
+    """Text without the dollar signs that would begin a formula, and without what no font has."""
+    return printable(text).replace("$", r"\$")

@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 from pcg.errors import InputError
 from planner import Settings
 
-MAX_COUNT = 10_000_000
+MAX_COUNT = 1_000_000
 """Largest number of candidates, iterations and the like: memory may grow with it."""
 
 _TYPES: dict[str, Any] = {

@@ -9,7 +9,7 @@ import contextlib
 import fcntl
 import math
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, astuple, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -26,6 +26,8 @@ from pcg.validation import Document, validated
 
 FILE_NAME = "trials.sqlite"
 LOCK_NAME = ".lock"
+_BESIDE = tuple(f"{FILE_NAME}-{suffix}" for suffix in ("wal", "shm", "journal"))
+"""Files that SQLite writes, the second even where it only reads."""
 VERSION = 2
 """`PRAGMA user_version` of the database."""
 
@@ -159,6 +161,7 @@ class StoredTrials:
         self._path = folder / FILE_NAME
         if not self._path.is_file():
             raise InputError(str(folder), f"no study: there is no file {FILE_NAME}")
+        _require_no_links(folder, _BESIDE)
         with self._explained():
             self._connection = sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro", uri=True)
             try:
@@ -336,9 +339,9 @@ def _require_version(connection: sqlite3.Connection, path: Path) -> None:
         raise InputError(str(path), f"a database of version {version}, allowed is {VERSION}")
 
 
-def _require_no_links(folder: Path) -> None:
+def _require_no_links(folder: Path, names: Sequence[str]) -> None:
     """Refuses links in place of our files: whoever made the folder could point them at files of its reader."""
-    for name in (LOCK_NAME, FILE_NAME, *(f"{FILE_NAME}-{suffix}" for suffix in ("wal", "shm", "journal"))):
+    for name in names:
         if (folder / name).is_symlink():
             raise InputError(str(folder / name), "a symbolic link, which is not followed for writing")
 
@@ -346,7 +349,7 @@ def _require_no_links(folder: Path) -> None:
 def _locked(folder: Path) -> IO[str]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        _require_no_links(folder)
+        _require_no_links(folder, (LOCK_NAME, FILE_NAME, *_BESIDE))
         file = (folder / LOCK_NAME).open("w")
     except OSError as error:
         raise InputError(str(folder), f"cannot be written: {error.strerror}") from None

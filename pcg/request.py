@@ -10,7 +10,7 @@ from pcg.level import Level
 from pcg.solver import Solution
 
 MAX_PUSHES = 10_000
-"""Stands for a push band without an upper end."""
+"""Largest number of pushes; stands for a push band without an upper end."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class Request:
             raise ValueError(f"{self.crates} crates cannot cover {self.targets} targets")
         if not 0 <= self.wall_density[0] <= self.wall_density[1] <= 1:
             raise ValueError(f"wall_density {self.wall_density} must be a range within 0 and 1")
-        if not 0 <= self.pushes[0] <= self.pushes[1]:
-            raise ValueError(f"pushes {self.pushes} must be a range from 0 up")
+        if not 0 <= self.pushes[0] <= self.pushes[1] <= MAX_PUSHES:
+            raise ValueError(f"pushes {self.pushes} must be a range within 0 and {MAX_PUSHES}")
         if self.things > self.cells:
             raise ValueError(f"{self.rows} x {self.columns} cells cannot hold {self.things} things")
         if self.frozen is not None and self.frozen.shape != (self.rows, self.columns):

@@ -44,7 +44,7 @@ def run(
             help="What proposes levels: random, m0 ... m35 of data/agents.yaml, or a policy of your own (.onnx).",
         ),
     ] = "random",
-    count: Annotated[int, typer.Option(metavar="N", min=1, help="Number of levels.")] = 10,
+    count: Annotated[int, typer.Option(metavar="N", min=1, max=1_000_000, help="Number of levels.")] = 10,
     seed: Seed = 0,
     rows: Annotated[int | None, _asked("N", "Rows within the outer wall.", "10", min=1, max=100)] = None,
     columns: Annotated[int | None, _asked("N", "Columns within the outer wall.", "10", min=1, max=100)] = None,

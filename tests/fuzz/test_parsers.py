@@ -177,7 +177,7 @@ HURTING: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "an escape sequence in a title": ("study", lambda: b'name: "\\e[31m"\n' + STUDY[8:] + b"[Rnd+R]", "name"),
     "an escape sequence in a method": ("study", lambda: STUDY + b'[{method: Rnd+R, name: "\\e"}]', r"methods\[0\].name"),
     "patterns in patterns": ("study", lambda: STUDY.replace(b"room.yaml", b"'**/**/*'") + b"[Rnd+R]", r"more than one \*\*"),
-    "candidates without end": ("study", lambda: STUDY + b"[{method: Rnd+R, set: {candidates: 99999999999}}]", "at most 10000000"),
+    "candidates without end": ("study", lambda: STUDY + b"[{method: Rnd+R, set: {candidates: 99999999999}}]", "at most 1000000"),
     "methods without end": (
         "study",
         lambda: STUDY + b"".join(b"\n- {method: Rnd+R, name: m%d, sweep: {candidates: [%s], expansions: [%s]}}" % (
