@@ -107,5 +107,6 @@ class ConversionSettings:
         if self.jitters and widest > room:
             raise InputError(
                 "object_size",
-                f"boxes of {self.object_size} m with this jitter may be {widest:.3g} m wide; a cell has {room:.3g} m",
+                f"boxes of {self.object_size} m with this jitter may be {widest:.3g} m wide; beside the outer walls of preset "
+                f"{preset.name} a cell of {self.cell} m leaves {room:.3g} m",
             )

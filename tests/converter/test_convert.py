@@ -211,7 +211,7 @@ def test_the_goal_crate_may_be_chosen():
     scene = convert_level(replace(level, goal_crate=(1, 1)), ConversionSettings(goal_crate=2))
     assert (scene.source["goal_crate"], scene.source["goal_crate_from"]) == ([1, 3], "option")
     np.testing.assert_array_equal(scene.goal_object.position, [0.4, 0, 0.1])
-    with pytest.raises(InputError, match=r"^tiny: goal_crate: 3, but the level has 2 crates$"):
+    with pytest.raises(InputError, match=r"^level 'tiny': goal_crate: 3, but the level has 2 crates$"):
         convert_level(level, ConversionSettings(goal_crate=3))
 
 
@@ -298,7 +298,10 @@ def test_a_level_of_too_many_walls_is_refused():
         ({"seed": -1}, "seed: -1 must not be negative"),
         ({"goal_crate": 0}, "goal_crate: 0 is not the number of a crate"),
         ({"object_size": 0.3, "yaw_jitter": 1.0}, "object_size: boxes of 0.3 m with this jitter may be 0.424 m wide"),
-        ({"size_jitter": 0.6, "preset": "published"}, "may be 0.32 m wide; a cell has 0.3 m"),
+        (
+            {"size_jitter": 0.6, "preset": "published"},
+            "may be 0.32 m wide; beside the outer walls of preset published a cell of 0.4 m leaves 0.3 m",
+        ),
     ],
 )
 def test_impossible_settings_are_refused(fields: dict[str, float | str], message: str):
