@@ -188,7 +188,7 @@ def test_the_deepest_place_lies_where_an_edge_between_the_ends_says(mirror: floa
     corners = np.array([[-1, -5], [1, -5], [1, 0.6 - 4 / 3], [-12 / 35, 37 / 35], [-1, 1.55]]) * [mirror, 1]
     tower = prism("tower", Part(corners[:: int(mirror)]), np.zeros(2))
     agent = Prism.of_agent(Agent(np.zeros(2), 0.1))
-    path = np.array([[-3.0, 0.0], [3.0, 0.0]])[::reverse]
+    path = np.array([[-5.0, 0.0], [5.0, 0.0]])[::reverse]
     contact = deepest_contacts(agent, path, [tower], 0.0)["tower"]
     assert contact.depth == pytest.approx(0.1 + 29 / 45)
     assert contact.where == pytest.approx([-mirror * 16 / 45, 0.0])
