@@ -72,7 +72,7 @@ def test_a_plan_without_its_scene_needs_one(tmp_path: Path, small_room: Scene, s
         (["--to", "xml"], "--to: found 'xml', allowed are csv, npz, pddl"),
         (["--step", "0"], "step: 0.0 s must be positive"),
         (["--speed", "nan"], "speed: nan m/s must be from"),
-        (["--grasp-time", "-1"], "grasp_time: -1.0 s must be >= 0"),
+        (["--grasp-time", "-1"], "grasp_time: -1.0 s must be from 0"),
     ],
 )
 def test_bad_options_are_named(tmp_path: Path, plan_file: Path, options: list[str], message: str):

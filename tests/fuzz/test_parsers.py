@@ -1,6 +1,5 @@
 """Whatever is in a file, its parser reads it or refuses it with one line: mutated good files, and files made to hurt."""
 
-import base64
 import contextlib
 import json
 import re
@@ -267,13 +266,3 @@ def test_what_was_computed_survives_refusal(tmp_path: Path):
         with pytest.raises(InputError, match="damaged"):
             store.study()
         assert [row.seed for row in store.rows()] == [0, 1]
-
-
-FOUND = {}
-"""Inputs that coverage-guided fuzzing found, by parser; base64."""
-
-
-@pytest.mark.parametrize(("name", "data"), [(name, data) for name, inputs in FOUND.items() for data in inputs])
-def test_what_fuzzing_found_stays_mended(name: str, data: str, folder: Path):
-    """Each of these made a parser fail once."""
-    require_one_line(complaint(PARSERS[name], base64.b64decode(data), folder), PARSERS[name].file)
