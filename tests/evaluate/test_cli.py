@@ -289,7 +289,7 @@ BAD_INPUT = {
     "no player": (["levels", "no-player.xsb"], "no-player.xsb: line 1: the level has no players"),
     "no level": (["convert", "file", "--out", "o"], "file: no level found"),
     "not a scene": (["check", "levels.txt"], "levels.txt: not a scene file: the suffix must be"),
-    "not a plan": (["verify", "room.yaml", "room.yaml"], "room.yaml: not a JSON document"),
+    "not a plan": (["verify", "room.yaml", "room.yaml"], "room.yaml: not a plan: a plan is a .json file"),
     "plan of another scene": (["verify", "blocked.yaml", "plan.json"], "plan.json: plan of another scene"),
     "plan without a scene": (["render", "plan.json", "--out", "o"], "plan.json: the file holds no scene"),
     "unknown method": (["solve", "room.yaml", "--out", "o", "--method", "X"], "method: found 'X', allowed are Rnd+FPR"),
