@@ -14,8 +14,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 
+import numpy as np
+
 from converter.plan import Status
-from converter.scene import Body, Scene
+from converter.scene import NUMERIC_SLACK, Body, Scene
 from converter.shape import FloatArray, Part
 from planner.configuration_space import ARC_EXCESS, ConfigurationSpace, ObstacleSet, agent_obstacles
 from planner.contact_curve import ContactCurve
@@ -26,6 +28,9 @@ from planner.visibility import ShortestPathTree
 
 PATIENCE_S = 0.1
 """Time that a search has before a proof is looked for [s]."""
+
+_FAR = 100.0
+"""Further [m] than any object reaches over the bounds."""
 
 _SLACK = 2e-6
 """More than the gap [m], beyond the tolerance, that the verification lets pass as touching."""
@@ -39,6 +44,8 @@ def proof_of_infeasibility(problem: Problem) -> str | None:
     scene, places = problem.scene, problem.initial.objects
     objects, goal = scene.objects, scene.goal
     goal_object = objects[problem.goal_index]
+    if not problem.goal_in_bounds:
+        return "the goal is out of bounds"
     among_all = _Surroundings(problem, [*scene.walls, *(body.at(xy) for body, xy in zip(objects, places, strict=True))])
     among_walls = _Surroundings(problem, scene.walls)
     if not any(among_all.agent_touches(body, xy) for body, xy in zip(objects, places, strict=True)):
@@ -51,17 +58,27 @@ def proof_of_infeasibility(problem: Problem) -> str | None:
 
 
 def with_proof(
-    solve: Callable[[Callable[[], bool]], PlanResult], scene: Scene, should_stop: Callable[[], bool]
+    solve: Callable[[Callable[[], bool]], PlanResult],
+    scene: Scene,
+    should_stop: Callable[[], bool],
+    *,
+    ends_search: bool = True,
 ) -> PlanResult:
     """The result of `solve`; `infeasible` if it finds no plan and a proof says that there is none.
 
     Args:
-        solve: Searches until what it is given says stop, which it does as soon as there is a proof.
+        solve: Searches until what it is given says stop.
         scene: The puzzle.
         should_stop: What it would be given otherwise.
+        ends_search: Whether the search is told to stop once there is a proof. A method that accepts plans which no
+            verification passes would otherwise accept one or not, depending on how fast it is.
     """
     proof = _Proof(scene)
-    result = solve(lambda: should_stop() or (proof.is_due() and proof.text is not None))
+
+    def stops() -> bool:
+        return should_stop() or (ends_search and proof.is_due() and proof.text is not None)
+
+    result = solve(stops)
     if result.status is Status.SOLVED or proof.text is None:
         return result
     return replace(result, status=Status.INFEASIBLE, certificate=proof.text)
@@ -89,6 +106,7 @@ class _Surroundings:
         scene = problem.scene
         self._agent = scene.agent
         self._start = problem.initial.agent
+        self._bounds = scene.bounds
         self._reach = scene.agent.radius + scene.tolerance + _SLACK
         exact = once_a_shape(partial(agent_obstacles, scene.agent, tolerance=scene.tolerance))
         self._bodies = [(body, exact(body)) for body in bodies]
@@ -108,8 +126,17 @@ class _Surroundings:
         if curve.encloses(self._start - place):
             return True
         others = [obstacles.moved(b.position[:2] - place) for b, obstacles in self._bodies if b.name != body.name]
-        stretches = curve.free_stretches(ObstacleSet.union(others))
+        stretches = curve.free_stretches(ObstacleSet.union([*others, _beyond(self._bounds).moved(-place)]))
         return bool(self._tree.reaches(place + curve.at(stretches.mean(axis=1))).any())
+
+
+def _beyond(bounds: FloatArray) -> ObstacleSet:
+    """What is out of bounds, as four obstacles: a stretch of a curve must not leave the bounds and come back."""
+    (x0, y0), (x1, y1) = bounds
+    far = _FAR + np.abs(bounds).max()
+    sides = [(-far, -far, x0, far), (x1, -far, far, far), (-far, -far, far, y0), (-far, y1, far, far)]
+    boxes = [np.array([(ax, ay), (bx, ay), (bx, by), (ax, by)]) for ax, ay, bx, by in sides]
+    return ObstacleSet.of(boxes, [-NUMERIC_SLACK] * len(boxes))
 
 
 def _swept(body: Body, size: FloatArray) -> Body:

@@ -86,5 +86,6 @@ def solve(
         InputError: bodies of the scene overlap at the start, or the scene lacks what the method needs.
     """
     solver = partial(SOLVERS[settings.method], scene, settings, rng, on_progress=on_progress)
-    result = with_proof(lambda stop: solver(should_stop=stop), scene, should_stop)
+    is_exact = settings.method != "MBTS"
+    result = with_proof(lambda stop: solver(should_stop=stop), scene, should_stop, ends_search=is_exact)
     return _improve(scene, result, settings, rng, should_stop) if settings.improve else result

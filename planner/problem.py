@@ -87,6 +87,13 @@ class Problem:
         """Whether the goal-object's centre lies in the goal."""
         return self.scene.goal.contains(configuration.objects[self.goal_index])
 
+    @property
+    def goal_in_bounds(self) -> bool:
+        """Whether any point of the goal lies where centres have to stay."""
+        goal, (lower, upper) = self.scene.goal, self.scene.bounds
+        nearest = np.clip(goal.position, lower, upper)
+        return goal.contains(nearest)
+
     def distance_to_goal(self, configuration: Configuration) -> float:
         """How far the goal-object's centre is from the goal [m], as the crow flies."""
         return self.scene.goal.distance(configuration.objects[self.goal_index])

@@ -56,6 +56,12 @@ def test_the_goal_has_to_be_touched_from_outside():
     assert proof_of_infeasibility(Problem(divided(0.3, obj=(-1.5, 1), goal=(-1, 0)))) is None
 
 
+@pytest.mark.parametrize(("x", "proof"), [(2.1, None), (2.2, "the goal is out of bounds")])
+def test_the_goal_has_to_be_in_bounds(x: float, proof: str | None):
+    """A goal of side 0.35 whose centre is 0.1 m outside can still be met, one 0.2 m outside cannot."""
+    assert proof_of_infeasibility(Problem(room(goal=(x, 0)))) == proof
+
+
 @pytest.mark.parametrize("tolerance", [0.0, 1e-3])
 def test_no_published_puzzle_is_infeasible(tolerance: float):
     """All of them have plans, with and without tolerance."""
@@ -69,9 +75,9 @@ def test_no_solvable_level_is_infeasible():
         assert proof_of_infeasibility(Problem(convert_level(level))) is None
 
 
-@pytest.mark.parametrize("method", [method for method in METHODS if method not in {"Push", "Hum+R"}])
-def test_every_method_says_infeasible(method: str):
-    """A proof ends the search of any method and is its certificate."""
+@pytest.mark.parametrize("method", [method for method in METHODS if method not in {"Push", "Hum+R", "MBTS"}])
+def test_every_exact_method_says_infeasible(method: str):
+    """A proof ends the search of any method whose plans are exact, and is its certificate."""
     result = solve(divided(0.3), Settings(method=method, time_limit=30), np.random.default_rng(0))
     assert (result.status, result.certificate) == (Status.INFEASIBLE, "the agent can touch no object")
     assert result.time_s < 30
@@ -90,3 +96,15 @@ def test_a_proof_ends_a_search(monkeypatch: pytest.MonkeyPatch):
     asked = iter([False, False, True])
     assert with_proof(endless, divided(0.5), lambda: next(asked)).status is Status.TIMEOUT
     assert with_proof(lambda _: PlanResult(Status.SOLVED, 1.0), divided(0.3), lambda: False).status is Status.SOLVED
+
+
+def test_a_search_that_is_not_ended_is_judged_afterwards(monkeypatch: pytest.MonkeyPatch):
+    """Without `ends_search` a proof does not stop the search, and counts once that has failed by itself."""
+    monkeypatch.setattr("planner.infeasible.PATIENCE_S", 0.0)
+
+    def stubborn(should_stop: Callable[[], bool]) -> PlanResult:
+        assert not should_stop()
+        return PlanResult(Status.EXHAUSTED, 1.0)
+
+    result = with_proof(stubborn, divided(0.3), lambda: False, ends_search=False)
+    assert (result.status, result.certificate) == (Status.INFEASIBLE, "the agent can touch no object")
