@@ -108,7 +108,7 @@ def _choose_goal_crate(level: Level, settings: ConversionSettings) -> _Choice:
 
 def _crate_numbered(level: Level, number: int) -> Cell:
     if number > len(level.crates):
-        raise InputError(f"level {level.name!r}", f"goal_crate: {number}, but the level has {len(level.crates)} crates")
+        raise InputError(f"level {level.name!r}", f"goal_crate: {number}, but the level has only {len(level.crates)}")
     return level.crates[number - 1]
 
 

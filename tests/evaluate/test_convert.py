@@ -89,8 +89,8 @@ def test_workers_write_the_same_files(folder: Path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["levels.xsb", "--goal-crate", "2", "--workers", "2"], "two: goal_crate: 2, but the level has 1 crates"),
-        (["levels.xsb", "--goal-crate", "2"], "two: goal_crate: 2, but the level has 1 crates"),
+        (["levels.xsb", "--goal-crate", "2", "--workers", "2"], "level 'two': goal_crate: 2, but the level has only 1"),
+        (["levels.xsb", "--goal-crate", "2"], "level 'two': goal_crate: 2, but the level has only 1"),
         (["levels.xsb", "--size-jitter", "1.5"], "size_jitter: 1.5 must be at least 0 and less than 1"),
         (["a/one.yaml", "--merge-walls"], "a/one.yaml: sizes and choices apply to levels only"),
     ],
