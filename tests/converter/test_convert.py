@@ -211,7 +211,7 @@ def test_the_goal_crate_may_be_chosen():
     scene = convert_level(replace(level, goal_crate=(1, 1)), ConversionSettings(goal_crate=2))
     assert (scene.source["goal_crate"], scene.source["goal_crate_from"]) == ([1, 3], "option")
     np.testing.assert_array_equal(scene.goal_object.position, [0.4, 0, 0.1])
-    with pytest.raises(InputError, match=r"^level 'tiny': goal_crate: 3, but the level has 2 crates$"):
+    with pytest.raises(InputError, match=r"^level 'tiny': goal_crate: 3, but the level has only 2$"):
         convert_level(level, ConversionSettings(goal_crate=3))
 
 
