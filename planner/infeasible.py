@@ -104,7 +104,6 @@ class _Surroundings:
 
     def __init__(self, problem: Problem, bodies: Sequence[Body]) -> None:
         scene = problem.scene
-        self._agent = scene.agent
         self._start = problem.initial.agent
         self._bounds = scene.bounds
         self._reach = scene.agent.radius + scene.tolerance + _SLACK
