@@ -18,6 +18,7 @@ from converter.scene import Scene
 from evaluate.digest import digest
 from evaluate.placements import with_placements
 from evaluate.references import Reference
+from pcg.files import is_file
 from planner import PlanResult, Settings, search, solve
 from planner.infeasible import with_proof
 from planner.subgoals_human import demonstration_path
@@ -70,7 +71,7 @@ class OwnPlanner:
     def suits(self, scene: Scene, settings: Settings) -> bool:
         """Whether Hum has a demonstration, and Push a level."""
         if settings.generator == "Hum" and self.subgoals is None:
-            return demonstration_path(scene, settings).is_file()
+            return is_file(demonstration_path(scene, settings))
         return settings.method != "Push" or "xsb" in scene.source
 
     def prepare(self, scene: Scene, settings: Settings) -> None:

@@ -118,6 +118,13 @@ def test_bodies_on_top_of_each_other_do_not_meet():
     assert depth(box("b", 0, 0, z=0.29), [[0, 0]], box("c", 0, 0)) == pytest.approx(0.4)
 
 
+def test_the_agent_stands_on_the_floor():
+    """What lies below the floor does not meet it, what rises above the floor by a little does."""
+    agent = Prism.of_agent(Agent(np.zeros(2), 0.2))
+    assert depth(agent, [[0.0, 0.0]], box("sunk", 0, 0, z=-0.15)) is None
+    assert depth(agent, [[0.0, 0.0]], box("rising", 0, 0, z=-0.05)) is not None
+
+
 def test_compound_bodies_report_their_deepest_part():
     """Of the parts of an L the one that is met deepest counts."""
     parts = (Part.box((0.6, 0.2)), Part(np.array([[0.1, -0.1], [0.3, -0.1], [0.3, 0.5], [0.1, 0.5]])))
