@@ -1,6 +1,6 @@
 """Ways to group the scenes of a study: by occlusion, by how they were made, and by how hard they are."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -36,26 +36,28 @@ def groupings(facts: Facts, presets: Mapping[str, str | None] | None = None) -> 
         presets: Their geometries; where there are several, each has a grouping by occlusion of its own.
     """
     found = [Grouping(name, title, _grouped(facts, names, group_of)) for name, title, names, group_of in _groupings()]
-    found = [grouping for grouping in found if len(grouping.groups) > 1 or grouping.name == OCCLUSION]
-    in_preset = {
-        preset: {name: statistics for name, statistics in facts.items() if (presets or {}).get(name) == preset}
-        for preset in dict.fromkeys((presets or {}).values())
-    }
-    if len(in_preset) < 2:
-        return found
-    return [*(_by_occlusion(preset or "other", scenes) for preset, scenes in in_preset.items()), *found[1:]]
+    return [*_by_occlusion(facts, presets or {}), *(grouping for grouping in found if len(grouping.groups) > 1)]
 
 
-def _by_occlusion(preset: str, facts: Facts) -> Grouping:
-    _, _, names, group_of = _groupings()[0]
-    return Grouping(f"{OCCLUSION}-{preset}", f"occlusion in the geometry {preset}", _grouped(facts, names, group_of))
+def _by_occlusion(facts: Facts, presets: Mapping[str, str | None]) -> Iterator[Grouping]:
+    def grouped(names: Iterable[str]) -> dict[str, list[str]]:
+        of_names = {name: facts[name] for name in names}
+        return _grouped(of_names, tuple(_OCCLUDED.values()), lambda _, statistics: _OCCLUDED[statistics.occluded])
+
+    geometries = dict.fromkeys(presets.values())
+    if len(geometries) < 2:
+        yield Grouping(OCCLUSION, "occlusion", grouped(facts))
+        return
+    for geometry in geometries:
+        title = f"occlusion in the geometry {geometry or 'other'}"
+        names = [name for name in facts if presets.get(name) == geometry]
+        yield Grouping(f"{OCCLUSION}-{geometry or 'other'}", title, grouped(names))
 
 
 def _groupings() -> list[tuple[str, str, Sequence[str] | None, Callable[[str, SceneStatistics], str | None]]]:
     """Name, title, order of the groups (None for that of the scenes), and what group a scene belongs to."""
     density, passage, pick_places = (0.0, 0.1, 0.15, 0.2, 0.3), (0.0, 0.41, 0.5, 0.7, 1.0), (1, 2, 3, 4, 6)
     return [
-        (OCCLUSION, "occlusion", ("not occluded", "occluded"), lambda _, s: _OCCLUDED[s.occluded]),
         ("agent", "generator of the level", None, lambda name, _: generator_of(name)),
         ("density", "wall density", _ranges(density), lambda _, s: _range(density, s.wall_density)),
         ("passage", "narrowest passage [m]", _ranges(passage), lambda _, s: _range(passage, s.narrowest_passage_m)),

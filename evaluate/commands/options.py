@@ -18,6 +18,9 @@ Workers = Annotated[int, typer.Option(metavar="N", min=1, max=1024, help="Proces
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (.yaml, .g).")]
 SceneFiles = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scene files (.yaml, .g) and folders of them.")]
+ObjectName = Annotated[
+    str | None, typer.Option("--object", metavar="NAME", help="By default the goal-object.", show_default=False)
+]
 PLANS_HELP = "Plan files (.json), folders of them, and trials DIR#KEY of studies."
 SceneOfPlans = Annotated[
     Path | None,

@@ -1,15 +1,12 @@
 """`manipuzzle space`: the configuration spaces of a scene at its start, as a picture."""
 
-from typing import Annotated
-
 import numpy as np
-import typer
 
 from converter.drawing import Rounded
 from converter.render_space import Space, spaces_drawing
 from converter.shape import FloatArray
 from converter.theme import theme_named
-from evaluate.commands.options import Json, Out, SceneFile, Still, Theme, application
+from evaluate.commands.options import Json, ObjectName, Out, SceneFile, Still, Theme, application
 from evaluate.inputs import read_scene_file, require_choice, require_writable
 from evaluate.names import safe_name
 from evaluate.output import print_json, print_line
@@ -33,9 +30,7 @@ def run(
     scene: SceneFile,
     *,
     out: Out,
-    object_: Annotated[
-        str | None, typer.Option("--object", metavar="NAME", help="By default the goal-object.", show_default=False)
-    ] = None,
+    object_: ObjectName = None,
     format_: Still = "png",
     theme: Theme = "paper",
     json: Json = False,

@@ -1,15 +1,24 @@
 """`manipuzzle subgoals`: the subgoals that a method proposes for an object at the start, as a picture."""
 
 from collections import Counter
-from typing import Annotated
 
 import numpy as np
-import typer
 
 from converter.render_subgoals import subgoals_drawing
 from converter.scene import Scene
 from converter.theme import theme_named
-from evaluate.commands.options import ForwardSearch, Json, Out, SceneFile, Seed, SettingsName, Still, Theme, application
+from evaluate.commands.options import (
+    ForwardSearch,
+    Json,
+    ObjectName,
+    Out,
+    SceneFile,
+    Seed,
+    SettingsName,
+    Still,
+    Theme,
+    application,
+)
 from evaluate.inputs import read_scene_file, require_choice, require_writable
 from evaluate.names import safe_name
 from evaluate.output import print_json, print_line
@@ -32,9 +41,7 @@ def run(
     scene: SceneFile,
     *,
     out: Out,
-    object_: Annotated[
-        str | None, typer.Option("--object", metavar="NAME", help="By default the goal-object.", show_default=False)
-    ] = None,
+    object_: ObjectName = None,
     method: ForwardSearch = "Rnd+FPR",
     seed: Seed = 0,
     settings: SettingsName = "fast",
