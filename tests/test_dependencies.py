@@ -13,6 +13,9 @@ ROOT = Path(__file__).parents[1]
 PACKAGES = ("pcg", "converter", "planner", "evaluate")
 """In the order of dependence: each may import itself and those before it."""
 
+COMMANDS = {f"evaluate/commands/{path.name}" for path in (ROOT / "evaluate" / "commands").glob("[a-z]*.py")}
+"""The modules of the command line's commands, two of which take all their options from another."""
+
 HOMES = {
     "PIL": {"converter/image_file.py"},
     "casadi": {
@@ -75,8 +78,7 @@ HOMES = {
     "shapely": {"evaluate/bench_peers.py", "planner/penetration.py"},
     "stable_baselines3": {"pcg/train.py"},
     "torch": {"pcg/train.py"},
-    "typer": {"evaluate/cli.py"}
-    | {f"evaluate/commands/{path.name}" for path in (ROOT / "evaluate" / "commands").glob("[a-z]*.py")},
+    "typer": {"evaluate/cli.py"} | (COMMANDS - {"evaluate/commands/space.py", "evaluate/commands/subgoals.py"}),
     "yaml": {"pcg/yaml_text.py"},
 }
 """The only modules that import a library."""
