@@ -170,7 +170,8 @@ def _offered_name(line: str) -> str:
 
 
 def _as_name(text: str) -> str:
-    return "".join(character for character in " ".join(text.split()) if character.isprintable())
+    kept = "".join(character for character in text if character.isprintable() or character.isspace())
+    return " ".join(kept.split())
 
 
 def _level(block: _Block, where: str) -> Level:

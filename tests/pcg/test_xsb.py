@@ -47,6 +47,12 @@ def test_names(text: str, expected: list[str]):
     assert names(text.replace("\n", "\r\n")) == expected
 
 
+@pytest.mark.parametrize("title", ["\0 a b", "a\u200b \u200b b\xa0", "\x1ba\x1f\0 b \0"])
+def test_names_keep_what_can_be_printed(title: str):
+    """What cannot be is left out together with the space that it held apart."""
+    assert names(f"; {title}\n{A}\n\n{B}")[0] == "a b"
+
+
 def test_ragged_lines_and_all_floors():
     """Indented levels, open corners and the three characters of floor are read; what is outside becomes wall."""
     (level,) = parse_levels(
