@@ -1,5 +1,6 @@
 """What the command `render` draws: levels, scenes and plans, each with its picture, its name and a verdict."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -8,6 +9,7 @@ from typing import Literal, NamedTuple, Protocol
 
 from converter.drawing import Drawing
 from converter.plan import Plan
+from converter.raster import MAX_PIXELS
 from converter.render_level import level_drawing
 from converter.render_plan import plan_drawing
 from converter.render_scene import scene_drawing
@@ -90,8 +92,9 @@ def read_subjects(path: Path, given: Scene | None) -> list[Subject]:
 
 
 def level_subject(level: Level) -> Subject:
-    """A level as tiles."""
-    width_px = TILE_PX * (level.shape[1] + 2)
+    """A level as tiles, smaller ones where the picture would be too large."""
+    rows, columns = (side + 2 for side in level.shape)
+    width_px = columns * min(TILE_PX, math.isqrt(MAX_PIXELS // (rows * columns)))
     return Subject(
         "level", safe_name(level.name), partial(level_drawing, level), partial(_judge_level, level), width_px
     )

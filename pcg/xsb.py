@@ -2,7 +2,7 @@
 
 `#` wall, space, `-` or `_` floor, `@` player, `+` player on target, `$` crate, `*` crate on target, `.` target. A level
 is a block of lines that begin with a wall, after any floor, or hold nothing but the characters above; a blank or any
-other line ends it. All other lines are text. Two kinds of text name a level, and the first of these found is its name:
+other line ends it. All other lines are text, those of asterisks alone too, which part the mazes of XSokoban. Two kinds of text name a level, and the first of these found is its name:
 
 1. a `Title:` line below the level, with no blank line between them and the level;
 2. the last `; name` line above it, again with no blank line between (Boxoban);
@@ -43,7 +43,7 @@ _CHARACTERS = {
     Tile.PLAYER_ON_TARGET: "+",
 }
 TILE_OF_CHARACTER = {character: tile for tile, character in _CHARACTERS.items()} | {"-": Tile.FLOOR, "_": Tile.FLOOR}
-_ROW = re.compile(r"[ \t_-]*#|[ _-]*[@+$*.][ _@+$*.#-]*$")
+_ROW = re.compile(r"[ \t_-]*#|(?!\*+[ \t]*$)[ _-]*[@+$*.][ _@+$*.#-]*$")
 _TITLE = re.compile(r"title\s*:(.*)", re.IGNORECASE)
 
 

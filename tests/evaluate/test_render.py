@@ -14,6 +14,7 @@ from converter.plan import Plan, Status, write_plan
 from converter.scene import Scene
 from evaluate.cli import app
 from evaluate.picture_files import WORTH_A_PROCESS
+from evaluate.subjects import TILE_PX
 
 LEVELS = """\
 ; corridor
@@ -111,6 +112,15 @@ def test_widths_and_themes_are_as_asked(render: Render):
     )
     assert len(first) == len(second) == 200 * 200 * 3
     assert first != second
+
+
+def test_large_levels_have_smaller_tiles(render: Render):
+    """No default asks for more pixels than a picture may have."""
+    inside = "\n".join(f"#{' ' * 200}#" for _ in range(200))
+    Path("large.xsb").write_text(f"{'#' * 202}\n#@ $.{' ' * 196}#\n{inside}\n{'#' * 202}\n")
+    status, [file], _ = render("large.xsb")
+    assert status == 0
+    assert 10 * 202 <= PIL.Image.open(file).width < TILE_PX * 202
 
 
 def test_many_pictures_are_made_by_several_processes(render: Render):

@@ -35,10 +35,11 @@ def names(text: str) -> list[str]:
         (f"{A}\n\n{B}\n; 2", ["file-1", "2"]),
         (f";\n{A}\n;  \n\n;x:  y\t z \n{B}", ["file-1", "x: y z"]),
         (f"; remark\n; 1\n{A}\n; note\n\n{B}", ["1", "note"]),
+        (f"Maze: 1\nLength: 9\n\n{A}\n\n*****\nMaze: 2\n\n{B}\n*****\n", ["file-1", "file-2"]),
     ],
     ids=[
         "boxoban", "no blank lines", "microban", "below", "below, no blank lines", "headed, below", "sok", "plain text",
-        "one named", "empty remarks", "nearest",
+        "one named", "empty remarks", "nearest", "xsokoban",
     ],
 )  # fmt: skip
 def test_names(text: str, expected: list[str]):
