@@ -120,7 +120,8 @@ def test_large_levels_have_smaller_tiles(render: Render):
     Path("large.xsb").write_text(f"{'#' * 202}\n#@ $.{' ' * 196}#\n{inside}\n{'#' * 202}\n")
     status, [file], _ = render("large.xsb")
     assert status == 0
-    assert 10 * 202 <= PIL.Image.open(file).width < TILE_PX * 202
+    with PIL.Image.open(file) as image:
+        assert 10 * 202 <= image.width < TILE_PX * 202
 
 
 def test_many_pictures_are_made_by_several_processes(render: Render):
