@@ -351,14 +351,23 @@ def test_invalid_start():
     [
         ([("obj", 1.0, 1.01)], pytest.approx(0.01)),
         ([("other", 1.0, 1.0)], None),
+        ([("a", 1.0, 1.0)], None),
         ([("obj", 1.0, 0.5), ("obj", 1.0, 1.0)], None),
     ],
 )
 def test_subgoals_that_the_carries_do_not_make(subgoals: list[tuple[str, float, float]], amount: object):
-    """Another place, another object, or more placements than carries."""
+    """Another place, another object whatever its name, or more placements than carries."""
     claimed = [Subgoal(name, np.array([x, y])) for name, x, y in subgoals]
     violations = verify(room(), plan_of(room(), *GOOD, subgoals=claimed))
     assert [(v.kind, v.amount) for v in violations] == [(ViolationKind.SUBGOAL_MISMATCH, amount)]
+
+
+def test_a_carry_without_its_subgoal():
+    """Subgoals that leave out a placement are not those of the plan, even where the rest agree."""
+    half_way = carry("obj", (0.65, 0), (0.65, 0.5)), carry("obj", (0.65, 0.5), (0.65, 1))
+    for y in (0.5, 1.0):
+        claimed = [Subgoal("obj", np.array([1.0, y]))]
+        assert kinds(room(), GOOD[0], *half_way, subgoals=claimed) == {"subgoal_mismatch"}
 
 
 @pytest.mark.parametrize("z", [0.15, 0.05])
@@ -380,7 +389,8 @@ def test_where_and_when_a_plan_fails():
     """Every violation of a single segment names it and the place; those of a placement name the carry's."""
     drive, far = move((0, 0), (0.6, 0)), carry("obj", (0.6, 0), (0.6, 1))
     assert _place(only(room(), drive, far)) == ("no_touch", 1, (0.6, 0))
-    assert _place(only(room(), move((0, 0), (0.65, 0)), carry("box", (0.65, 0)))) == ("unknown_object", 1, (0.65, 0))
+    unknown = carry("box", (0.65, 0), (0.65, 1))
+    assert _place(only(room(), move((0, 0), (0.65, 0)), unknown)) == ("unknown_object", 1, (0.65, 0))
     assert _place(only(room(), move((0, 0.2), (0.65, 0)), GOOD[1])) == ("discontinuity", 0, (0, 0.2))
     assert _place(only(room(), GOOD[0], carry("obj", (0.65, 0), (0.65, 0.8)))) == ("goal_missed", None, (1.0, 0.8))
     claimed = [Subgoal("obj", np.array([1.0, 0.99]))]
@@ -431,8 +441,10 @@ def test_plan_of_another_scene():
     plan = plan_of(scene, *GOOD)
     require_same_scene(scene, plan)
     require_same_scene(replace(scene, name="other name"), plan)
-    with pytest.raises(InputError, match=r"^p\.json: plan of another scene: it was made for 'room'"):
-        require_same_scene(room(body("block", -1, 0)), plan, "p.json")
+    other = room(body("block", -1, 0))
+    for here, there in ((other, scene), (scene, other)):
+        with pytest.raises(InputError, match=r"^p\.json: plan of another scene: it was made for 'room'"):
+            require_same_scene(here, plan_of(there, *GOOD), "p.json")
     with pytest.raises(InputError, match=r"tolerance 0\.001 m, but the scene has 0\.0001 m; pass --tolerance 0\.001 "):
         require_same_scene(replace(scene, tolerance=1e-4), plan)
     exact = plan_of(room(tolerance=0.0), *GOOD)
@@ -440,7 +452,7 @@ def test_plan_of_another_scene():
         require_same_scene(scene, exact)
     for tolerance in (-1.0, np.inf, np.nan):
         with pytest.raises(InputError, match=r"^plan: plan of another scene"):
-            require_same_scene(room(body("block", -1, 0)), replace(plan, tolerance=tolerance))
+            require_same_scene(other, replace(plan, tolerance=tolerance))
 
 
 places = st.tuples(*[st.floats(-1.9, 1.9).map(lambda x: round(x, 2))] * 2)
