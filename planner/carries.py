@@ -78,6 +78,11 @@ def carries_of(problem: Problem, segments: Sequence[Segment]) -> tuple[Carry, ..
     return tuple(carries)
 
 
+def carry_of(configuration: Configuration, step: PickPlace) -> Carry:
+    """The carry that a pick-place from `configuration` is."""
+    return Carry(step.index, step.carry[0] - configuration.objects[step.index], step.placement)
+
+
 @dataclass
 class _Space:
     """A configuration space with the trees that grow in it, by their roots."""

@@ -3,6 +3,8 @@
 [L] leaves open how to improve the plans that its search finds. What there is to decide is little (`planner.carries`)
 and every candidate is decided exactly in about a millisecond, so simple means go far:
 
+- *Jumps* leave out configurations of a route that it need not pass through (`planner.improve_jumps`): what many short
+  carries did, one can do.
 - *Local search* changes a decision or two at a time (`planner.improve_moves`) and keeps what is better.
 - It starts anew, again and again, where it may end in another optimum: from the best route shaken, from a new search,
   or from a search that goes on from some configuration of the best route. In O-Room the way from the other side of the
@@ -24,6 +26,7 @@ import numpy as np
 from converter.scene import Scene
 from planner.assemble import segments_of, subgoals_of
 from planner.carries import Route, RoutePlanner, carries_of
+from planner.improve_jumps import Jumps
 from planner.improve_moves import Moves
 from planner.problem import Problem
 from planner.result import PlanResult
@@ -48,6 +51,9 @@ is found sooner where long ways are not tried."""
 
 MOVES, PATIENCE = 60, 20
 """The most moves of one local search, and how many in a row without success end it."""
+
+JUMPS = 3
+"""Times that a route is searched for configurations that can be skipped, each time with other grasps."""
 
 SHAKES = 10
 """Attempts at shaking a route so that it stays possible."""
@@ -101,6 +107,7 @@ class Improver:
         self._problem = Problem(scene)
         self._motions = RoutePlanner(self._problem)
         self._moves = Moves(self._problem, self._motions, rng)
+        self._jumps = Jumps(self._problem, self._motions, rng)
         self._starts = (self._shaken, self._restarted, self._spliced)
 
     def run(self, first: PlanResult) -> PlanResult:
@@ -133,6 +140,7 @@ class Improver:
         return min(worthwhile, key=lambda route: route.length, default=best)
 
     def _local_search(self, route: Route) -> Route:
+        route = self._skipping(route)
         failures = 0
         for _ in range(MOVES):
             if failures >= PATIENCE or self._should_stop():
@@ -142,6 +150,16 @@ class Improver:
             better = self._motions.route(carries, route.length if len(carries) == len(route.carries) else np.inf)
             failures = failures + 1 if better is None else 0
             route = better or route
+        return route
+
+    def _skipping(self, route: Route) -> Route:
+        """The route without configurations that it need not pass through."""
+        for _ in range(JUMPS):
+            if len(route.carries) == 1 or self._should_stop():
+                break
+            other = self._motions.route(self._jumps.fewest(route))
+            if other is not None and other.cost < route.cost:
+                route = other
         return route
 
     def _shaken(self, best: Route) -> Route | None:

@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from planner.carries import Carry, Route, RoutePlanner
+from planner.carries import Carry, Route, RoutePlanner, carry_of
 from planner.improve_draws import Draws
 from planner.pick_place import PickPlace
 from planner.problem import Configuration, Problem
@@ -99,7 +99,7 @@ class Moves:
             step = self._first_possible(configuration, self._drawn_anew(configuration, route, i))
             if step is None:
                 break
-            carries.append(_carry_of(configuration, step))
+            carries.append(carry_of(configuration, step))
             configuration = step.applied_to(configuration)
         return tuple(carries)
 
@@ -116,7 +116,7 @@ class Moves:
             step = self._first_possible(configuration, chain([carry], others))
             if step is None:
                 break
-            kept.append(_carry_of(configuration, step))
+            kept.append(carry_of(configuration, step))
             configuration = step.applied_to(configuration)
         return tuple(kept)
 
@@ -137,10 +137,6 @@ class Moves:
 
 def _replaced(carries: Carries, i: int, carry: Carry) -> Carries:
     return (*carries[:i], carry, *carries[i + 1 :])
-
-
-def _carry_of(configuration: Configuration, step: PickPlace) -> Carry:
-    return Carry(step.index, step.carry[0] - configuration.objects[step.index], step.placement)
 
 
 def _next_of_object(carries: Carries, i: int) -> int | None:
