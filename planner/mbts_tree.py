@@ -34,7 +34,11 @@ class TreeNode:
     @property
     def path(self) -> list["TreeNode"]:
         """The nodes from below the root to this one."""
-        return [] if self.parent is None else [*self.parent.path, self]
+        nodes, node = [], self
+        while node.parent is not None:
+            nodes.append(node)
+            node = node.parent
+        return nodes[::-1]
 
     @property
     def skeleton(self) -> Skeleton:
@@ -44,7 +48,7 @@ class TreeNode:
     @property
     def pruned(self) -> bool:
         """Whether this node or an ancestor is infeasible."""
-        return self.infeasible or (self.parent is not None and self.parent.pruned)
+        return any(node.infeasible for node in self.path)
 
 
 class Queue:

@@ -1,6 +1,7 @@
 """Every parameter of the search in one place, with the value chosen and why."""
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, get_args
 
@@ -40,7 +41,34 @@ _COUNTS = (
     "expansions",
     "restart_after",
     "max_expansions",
+    "mbts_max_depth",
+    "mbts_phase_steps",
+    "mbts_max_iterations",
 )
+
+_AMOUNTS = (
+    "subgoal_size",
+    "shortcut_rounds",
+    "improve_rounds",
+    "mbts_noise",
+    "mbts_action_cost",
+    "mbts_acceleration_weight",
+    "mbts_velocity_weight",
+    "mbts_homing_weight",
+    "mbts_switch_weight",
+    "mbts_touch_scale",
+    "mbts_placement_scale",
+    "mbts_collision_scale",
+)
+
+_RANGES: tuple[tuple[tuple[str, ...], Callable[[float], bool], str], ...] = (
+    (_COUNTS, lambda value: value >= 1, "at least 1"),
+    (_AMOUNTS, lambda value: value >= 0, "at least 0"),
+    (("rejection_cell", "novelty_cell", "mbts_max_violation"), lambda value: value > 0, "> 0"),
+    (("near_share", "contact_share", "explore_share"), lambda value: 0 <= value <= 1, "from 0 to 1"),
+    (("keep_share",), lambda value: 0 < value <= 1, "> 0 and at most 1"),
+)
+"""Names of settings, what their values have to fulfil, and how a message says it."""
 
 
 @dataclass(frozen=True)
@@ -119,26 +147,17 @@ class Settings(MbtsSettings):
     demonstrations: str | None = None
 
     def __post_init__(self) -> None:
-        for name, allowed in _CHOICES.items():
-            if (found := getattr(self, name)) not in allowed:
-                raise InputError(name, f"found {found!r}, allowed are {', '.join(allowed)}")
+        for name, choices in _CHOICES.items():
+            if (found := getattr(self, name)) not in choices:
+                raise InputError(name, f"found {found!r}, allowed are {', '.join(choices)}")
         if not 0 < self.time_limit < math.inf:
             raise InputError("time limit", f"found {self.time_limit}, must be a finite number of seconds > 0")
         if not 0 <= self.improve < math.inf:
             raise InputError("improve", f"found {self.improve}, must be a finite number of seconds >= 0")
-        self._require_ranges()
-
-    def _require_ranges(self) -> None:
-        for name in _COUNTS:
-            if getattr(self, name) < 1:
-                raise InputError(name, f"found {getattr(self, name)}, must be at least 1")
-        for name in ("near_share", "contact_share", "explore_share"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise InputError(name, f"found {getattr(self, name)}, must be from 0 to 1")
-        if not 0 < self.keep_share <= 1:
-            raise InputError("keep_share", f"found {self.keep_share}, must be > 0 and at most 1")
-        if not (self.subgoal_size >= 0 and self.rejection_cell > 0 and self.novelty_cell > 0):
-            raise InputError("settings", "subgoal_size must be >= 0, rejection_cell > 0 and novelty_cell > 0")
+        for names, fits, allowed in _RANGES:
+            for name in names:
+                if not fits(found := getattr(self, name)):
+                    raise InputError(name, f"found {found}, must be {allowed}")
 
     @property
     def generator(self) -> str:

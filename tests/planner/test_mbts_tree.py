@@ -31,6 +31,17 @@ def test_an_infeasible_node_prunes_its_subtree_only():
     assert [node.pruned for node in (root, picked, placed, sibling)] == [False, True, True, False]
 
 
+def test_long_sequences():
+    """The setting that bounds their length may be larger than the interpreter's stack."""
+    node = TreeNode(DOMAIN.initial)
+    for _ in range(5000):
+        node = TreeNode(DOMAIN.initial, node, Action(0))
+    assert len(node.skeleton) == 5000
+    assert not node.pruned
+    node.path[0].infeasible = True
+    assert node.pruned
+
+
 def test_the_cheapest_node_goes_first_and_of_equals_the_oldest():
     """Costs decide, then the order of entry."""
     queue, nodes = Queue(), [TreeNode(DOMAIN.initial) for _ in range(4)]

@@ -90,10 +90,24 @@ def test_the_document_holds_every_field():
         ({"candidates": 0}, "candidates: found 0, must be at least 1"),
         ({"keep_share": 1.5}, "keep_share: found 1.5, must be > 0 and at most 1"),
         ({"contact_share": -0.1}, "contact_share: found -0.1, must be from 0 to 1"),
-        ({"rejection_cell": 0.0}, "rejection_cell > 0"),
+        ({"rejection_cell": 0.0}, "rejection_cell: found 0.0, must be > 0"),
+        ({"rejection_cell": float("nan")}, "rejection_cell: found nan, must be > 0"),
+        ({"shortcut_rounds": -1}, "shortcut_rounds: found -1, must be at least 0"),
+        ({"mbts_phase_steps": 0}, "mbts_phase_steps: found 0, must be at least 1"),
+        ({"mbts_noise": -0.1}, "mbts_noise: found -0.1, must be at least 0"),
     ],
 )
 def test_values_that_make_no_sense_are_refused(changes: dict[str, Any], problem: str):
     """Settings name the parameter and what is allowed."""
     with pytest.raises(InputError, match=problem):
         Settings(**changes)
+
+
+@pytest.mark.parametrize(
+    "name", [field.name for field in fields(Settings) if field.type in ("int", "float", int, float)]
+)
+def test_every_number_has_a_range(name: str):
+    """There is no number of which -1 or NaN would make sense, so none goes unchecked."""
+    for value in (-1, float("nan")):
+        with pytest.raises(InputError, match=f"{name.replace('time_limit', 'time limit')}: found"):
+            Settings(**{name: value})
