@@ -13,12 +13,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from converter.plan import Plan
+from converter.plan import Plan, PlanDocument, plan_document
 from converter.scene import Scene
 from evaluate.digest import digest
 from evaluate.placements import with_placements
 from evaluate.references import Reference
 from pcg.files import is_file
+from pcg.validation import validated
 from planner import PlanResult, Settings, search, solve
 from planner.infeasible import with_proof
 from planner.subgoals_human import demonstration_path
@@ -161,9 +162,14 @@ class Method:
         return digest(self.document)
 
     def plan(self, scene: Scene, seed: int) -> Plan:
-        """The plan for a scene, in the name of the method."""
-        plan = self.planner.plan(scene, self.settings, seed)
-        return replace(plan, method=self.name, settings=self.document)
+        """The plan for a scene, in the name of the method.
+
+        Raises:
+            InputError: other people's code has put something into it that no plan's file may hold, such as NaN.
+        """
+        plan = replace(self.planner.plan(scene, self.settings, seed), method=self.name, settings=self.document)
+        validated(PlanDocument, plan_document(replace(plan, scene_data=None)), f"plan of {self.name}")
+        return plan
 
 
 def method_named(name: str, settings: Settings) -> Method:

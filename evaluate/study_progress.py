@@ -1,6 +1,7 @@
 """What a person sees of a study that runs for hours: trials done and left, how many are solved, what goes worst."""
 
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -35,7 +36,8 @@ class StudyProgress:
         self._bar, self._study, self._clock = bar, study, clock
         self._left, self._all = study.size, _Tally()
         self._scenes: dict[str, _Tally] = {}
-        self._errors: dict[str, list[str]] = {}
+        self._errors: Counter[str] = Counter()
+        self._first_errors: dict[str, str] = {}
         self._started = clock()
         self._shown = -REFRESH_S
         self._task = bar.add_task(study.name, total=study.size, study="")
@@ -51,7 +53,8 @@ class StudyProgress:
                 tally.solved += row.verified is True
                 tally.time_s += row.time_s
             if row.status == Status.ERROR:
-                self._errors.setdefault(row.method, []).append(row.message or "")
+                self._errors[row.method] += 1
+                self._first_errors.setdefault(row.method, row.message or "")
         now = self._clock()
         if now - self._shown >= REFRESH_S or self._all.run == self._left:
             self._shown = now
@@ -60,8 +63,8 @@ class StudyProgress:
     def errors(self) -> list[str]:
         """A line for each method of which trials ended with an error."""
         return [
-            f"{method}: {counted(len(messages), 'trial')} ended with an error, the first: {messages[0]}"
-            for method, messages in self._errors.items()
+            f"{method}: {counted(number, 'trial')} ended with an error, the first: {self._first_errors[method]}"
+            for method, number in self._errors.items()
         ]
 
     def text(self) -> str:

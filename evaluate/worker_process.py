@@ -21,6 +21,8 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from pcg.printable import one_line
+
 READY = None
 """What a worker sends when it can take its first task; later it sends pairs: whether a task succeeded, and its result
 or the reason."""
@@ -131,7 +133,7 @@ def _outcome(function: Callable[[Any], Any], task: Any) -> tuple[bool, Any]:
     try:
         return True, function(task)
     except Exception as error:  # noqa: BLE001  # whatever a task raises is its outcome
-        return False, " ".join(f"{type(error).__name__}: {error}".split())
+        return False, one_line(f"{type(error).__name__}: {error}")
 
 
 def _end_with_coordinator(descriptor: int) -> None:

@@ -32,6 +32,12 @@ def solve(scene, settings, rng, option=0):
 def wrong(scene, settings, rng):
     return "a plan"
 
+def endless(scene, settings, rng):
+    return PlanResult(Status.EXHAUSTED, 0.0, counters={"score": float("nan")})
+
+def half(scene, settings, rng):
+    return PlanResult(Status.EXHAUSTED, 0.0, certificate="half of a character: \\udc80")
+
 class Here:
     """Proposes where the object is."""
     def __init__(self, problem, settings):
@@ -82,6 +88,17 @@ def test_an_imported_planner_must_return_a_result(folder: str, small_room: Scene
     """Anything else is an error that says what was found."""
     method = Method("theirs", Settings(), ImportedPlanner(reference(folder, "wrong")))
     with pytest.raises(TypeError, match=r"wrong returned a str, allowed is a planner\.PlanResult"):
+        method.plan(small_room, 0)
+
+
+@pytest.mark.parametrize(
+    ("function", "problem"),
+    [("endless", r"counters\.score: .*found nan"), ("half", "certificate: text must be Unicode")],
+)
+def test_an_imported_planner_must_say_what_a_plan_can_hold(folder: str, small_room: Scene, function: str, problem: str):
+    """What would make the database or its report unusable is an error of the trial."""
+    method = Method("theirs", Settings(), ImportedPlanner(reference(folder, function)))
+    with pytest.raises(InputError, match=f"plan of theirs: {problem}"):
         method.plan(small_room, 0)
 
 

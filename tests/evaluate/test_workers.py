@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from evaluate.workers import Failure, Job, WorkerStartError, run_tasks
+from pcg.printable import MAX_LENGTH
 
 
 def as_it_is(_task: Any, failure: Failure) -> Failure:
@@ -34,7 +35,7 @@ def _importable(monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers find this module where this process finds it now."""
     monkeypatch.syspath_prepend(Path(__file__).parent)
     monkeypatch.setitem(sys.modules, "test_workers", sys.modules[__name__])
-    for function in (killed_once, start_and_wait, wait_after_saying_pid):
+    for function in (killed_once, raise_error, start_and_wait, wait_after_saying_pid):
         monkeypatch.setattr(function, "__module__", "test_workers")
 
 
@@ -57,6 +58,19 @@ def test_an_exception_is_an_outcome():
     assert failure.kind == "error"
     assert failure.message.startswith("ValueError: ")
     assert outcomes[4.0] == 2.0
+
+
+def test_what_an_exception_says_can_be_written_down():
+    """Halves of characters and control characters become escape sequences, and what is endless is shortened."""
+    said = ["half \udc80, zero \0", "x" * 1_000_000]
+    half, endless = (failure.message for _, failure in sorted(run_tasks(job(raise_error), iter(said), 1)))
+    assert half == "RuntimeError: half \\udc80, zero \\x00"
+    assert len(endless) <= MAX_LENGTH
+
+
+def raise_error(text: str) -> None:
+    """Raises an error that says `text`."""
+    raise RuntimeError(text)
 
 
 def test_an_overrunning_task_is_stopped():
