@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from converter.plan import Plan, PlanDocument, plan_document
+from converter.plan import Plan, PlanDocument, Status, plan_document
 from converter.scene import Scene
 from evaluate.digest import digest
 from evaluate.placements import with_placements
@@ -100,7 +100,7 @@ def _with_occupied_goal(scene: Scene) -> Scene:
 class ImportedPlanner:
     """Somebody else's function `(scene, settings, rng, **options) -> PlanResult`.
 
-    Its time is measured here, whatever the result says.
+    Its time is measured here, whatever the result says. Numbers of NumPy and the text of a status will do.
 
     Attributes:
         function: The function.
@@ -119,7 +119,9 @@ class ImportedPlanner:
         if not isinstance(result, PlanResult):
             found = type(result).__name__
             raise TypeError(f"{self.function.text} returned a {found}, allowed is a planner.PlanResult")
-        return with_placements(replace(result, time_s=time_s).to_plan(scene, settings, seed))
+        counters = {name: v.item() if isinstance(v, np.generic) else v for name, v in result.counters.items()}
+        result = replace(result, time_s=time_s, status=Status(result.status), counters=counters)
+        return with_placements(result.to_plan(scene, settings, seed))
 
     def document(self) -> dict[str, Any]:
         """See `Planner`."""

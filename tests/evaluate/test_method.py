@@ -10,6 +10,7 @@ import pytest
 from converter.plan import Segment, Status
 from converter.scene import Scene
 from evaluate.method import ImportedPlanner, Method, OwnPlanner, method_named
+from evaluate.record import run_recorded
 from evaluate.references import HEURISTICS, PLANNERS, SUBGOALS, Reference
 from evaluate.trial import Trial, prepare
 from pcg.errors import InputError
@@ -31,6 +32,9 @@ def solve(scene, settings, rng, option=0):
 
 def wrong(scene, settings, rng):
     return "a plan"
+
+def with_numpy(scene, settings, rng):
+    return PlanResult("exhausted", 0.0, counters={"nodes": np.int64(3), "score": np.float32(0.5)})
 
 def endless(scene, settings, rng):
     return PlanResult(Status.EXHAUSTED, 0.0, counters={"score": float("nan")})
@@ -89,6 +93,13 @@ def test_an_imported_planner_must_return_a_result(folder: str, small_room: Scene
     method = Method("theirs", Settings(), ImportedPlanner(reference(folder, "wrong")))
     with pytest.raises(TypeError, match=r"wrong returned a str, allowed is a planner\.PlanResult"):
         method.plan(small_room, 0)
+
+
+def test_numbers_of_numpy_are_numbers(folder: str, small_room: Scene):
+    """Counters come from arrays as often as not, and the text of a status stands for it; the row can be written."""
+    method = Method("theirs", Settings(), ImportedPlanner(reference(folder, "with_numpy")))
+    row = run_recorded(Trial(small_room, method, 0))
+    assert (row.status, row.counters) == ("exhausted", '{"nodes": 3, "score": 0.5}')
 
 
 @pytest.mark.parametrize(
