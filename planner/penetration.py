@@ -184,7 +184,7 @@ def _argmax_of_minimum(values: FloatArray, slopes: FloatArray) -> float:
     for _ in values:
         t = (values[falling] - values[rising]) / (slopes[rising] - slopes[falling])
         least = int((values + t * slopes).argmin())
-        if least in (rising, falling) or slopes[least] == 0:
+        if least in (rising, falling):
             break
         rising, falling = (least, falling) if slopes[least] > 0 else (rising, least)
     return float(np.clip(t, 0.0, 1.0))

@@ -112,6 +112,24 @@ def test_cutting_a_corner_is_found_between_free_way_points():
     assert found == pytest.approx(0.1)
 
 
+@pytest.mark.parametrize("turn", range(3))
+def test_the_deepest_piece_of_a_path_counts(turn: int):
+    """Wherever it stands in the path: the piece that enters by 0.1, beside one that enters by 0.05 and a free one."""
+    there, shallow, deep = [-1.0, 0.0], [-0.35, 0.0], [-0.3, 0.0]
+    path = [[there, shallow, there, deep], [there, deep, there, shallow], [shallow, there, deep, there]][turn]
+    assert depth(box("b", 0, 0), path, box("wall", 0, 0)) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("x", [0.0, 1.0, -2.7])
+def test_merged_vertices_change_nothing(x: float):
+    """A core so thin that rounding merges its vertices is a line: a cube across it has to leave by half its side."""
+    corners = np.array([[-1e-17, -1.0], [1e-17, -1.0], [1e-17, 1.0], [-1e-17, 1.0]])
+    thin = prism("thin", Part(corners), np.array([x, 0.0]))
+    assert depth(box("b", 0, 0), [[x, 0.0]], thin) == pytest.approx(0.2)
+    assert depth(box("b", 0, 0), [[x - 1, 0.1], [x + 1, 0.1]], thin) == pytest.approx(0.2)
+    assert depth(box("b", 0, 0), [[x + 0.2 + 1e-9, 0.0]], thin) is None
+
+
 def test_bodies_on_top_of_each_other_do_not_meet():
     """Height intervals that only touch are disjoint."""
     assert depth(box("b", 0, 0, z=0.3), [[0, 0]], box("c", 0, 0)) is None
