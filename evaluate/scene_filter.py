@@ -13,7 +13,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from converter.occlusion import occluded
 from converter.scene import Scene
-from evaluate.scene_statistics import SceneStatistics, generator_of, statistics_of
+from evaluate.scene_statistics import SceneStatistics, generator_of, geometry_statistics_of, statistics_of
 from pcg.errors import InputError
 from pcg.validation import Document
 
@@ -47,20 +47,23 @@ Condition = Annotated[
     Discriminator(_form),
 ]
 
-_CHEAP: dict[str, Callable[[Scene], Any]] = {
+_EASY: dict[str, Callable[[Scene], Any]] = {
     "name": lambda scene: scene.name,
     "agent": lambda scene: generator_of(scene.name),
     "preset": lambda scene: scene.preset,
     "objects": lambda scene: len(scene.objects),
     "occluded": occluded,
 }
-"""Facts that take no planning."""
+"""Facts that every scene has, and that take no time."""
+
+_PLANNED = ("pick_places", "monotone")
+"""Facts about a plan, which has to be found first."""
 
 _TEXTS = ("name", "agent", "preset")
 """Facts that have no order."""
 
 _STATISTICS = tuple(field.name for field in fields(SceneStatistics))
-FACTS = tuple(dict.fromkeys((*_CHEAP, *_STATISTICS)))
+FACTS = tuple(dict.fromkeys((*_EASY, *_STATISTICS)))
 """What conditions may be about."""
 
 
@@ -77,15 +80,31 @@ def require_facts(conditions: Mapping[str, Condition], where: str) -> None:
             raise InputError(where, f"{name}: found a range, but {name} is text")
 
 
+def by_cost(conditions: Mapping[str, Condition]) -> tuple[dict[str, Condition], dict[str, Condition]]:
+    """The conditions on what can be said of any scene at once, and those that need time and a valid scene."""
+    easy, hard = (
+        {name: condition for name, condition in conditions.items() if (name in _EASY) is wanted}
+        for wanted in (True, False)
+    )
+    return easy, hard
+
+
 def fulfils(scene: Scene, conditions: Mapping[str, Condition]) -> bool:
-    """Whether a scene meets all conditions; the cheap ones are asked first."""
-    cheap = {name: condition for name, condition in conditions.items() if name in _CHEAP}
-    if not all(_meets(_CHEAP[name](scene), condition) for name, condition in cheap.items()):
+    """Whether a scene meets all conditions; the next costlier ones are asked if the others are met.
+
+    Raises:
+        InputError: a condition needs a valid scene (`by_cost`), and this one is not.
+    """
+    easy, hard = by_cost(conditions)
+    if not all(_meets(_EASY[name](scene), condition) for name, condition in easy.items()):
         return False
-    if len(cheap) == len(conditions):
-        return True
-    facts = asdict(statistics_of(scene))
-    return all(_meets(facts[name], conditions[name]) for name in conditions.keys() - cheap.keys())
+    geometric = [name for name in hard if name not in _PLANNED]
+    for names, statistics in ((geometric, geometry_statistics_of), (_PLANNED, statistics_of)):
+        if asked := [name for name in names if name in hard]:
+            facts = asdict(statistics(scene))
+            if not all(_meets(facts[name], hard[name]) for name in asked):
+                return False
+    return True
 
 
 def _meets(fact: Any, condition: Condition) -> bool:

@@ -22,7 +22,7 @@ from converter.preset import CLEAR
 from converter.scene import Scene
 from evaluate.inputs import adapted, is_scene, read_playable_levels, read_scene_file
 from evaluate.names import safe_name
-from evaluate.scene_filter import Condition, fulfils, require_facts
+from evaluate.scene_filter import Condition, by_cost, fulfils, require_facts
 from pcg.errors import InputError
 from pcg.validation import Document
 from planner.problem import Problem
@@ -100,14 +100,15 @@ def read_sources(sources: Sequence[SceneSourceDocument], reading: Reading, where
 
 def _take(found: FoundScenes, source: SceneSourceDocument, paths: Sequence[Path], reading: Reading, place: str) -> None:
     presets: Sequence[str | None] = source.presets or reading.presets
+    easy, hard = by_cost(source.where)
     before = len(found.scenes)
     for preset in presets:
         scenes = [scene for path in paths for scene in _read(path, preset, reading.tolerance)]
-        suitable = [scene for scene in scenes if fulfils(scene, source.where)] if source.where else scenes
+        suitable = [scene for scene in scenes if fulfils(scene, easy)]
         faults = {id(scene): fault for scene in suitable if (fault := _fault(scene)) is not None}
         if faults:
             found.notes.append(_left_out(place, preset, len(suitable), list(faults.values())))
-        valid = [scene for scene in suitable if id(scene) not in faults]
+        valid = [scene for scene in suitable if id(scene) not in faults and fulfils(scene, hard)]
         found.scenes += _spread(valid, source.take, f"{place}.take")
     if len(found.scenes) == before:
         wanted = "meets the conditions and is valid" if source.where else "is valid"

@@ -113,10 +113,15 @@ def test_levels_are_converted_in_both_geometries(spec: Path):
         assert [(scene.name, scene.preset) for scene in read_study(spec).scenes] == expected
 
 
-def test_invalid_scenes_are_left_out_with_a_note(spec: Path):
-    """In `published` the outer wall reaches to where the robot of the third level begins; alone that is refused."""
+@pytest.mark.parametrize("also", ["", ", must_move: 1", ", narrowest_passage_m: {max: 9}, monotone: true"])
+def test_invalid_scenes_are_left_out_with_a_note(spec: Path, also: str):
+    """In `published` the outer wall reaches to where the robot of the third level begins; alone that is refused.
+
+    So it is where conditions need valid scenes.
+    """
     (spec.parent / "levels.xsb").write_text(LEVELS + AT_THE_BORDER)
-    text = SPEC.replace("scenes/*.yaml", "{files: levels.xsb, presets: [clear, published], where: {name: t*}}")
+    source = "{files: levels.xsb, presets: [clear, published], where: {name: t*ALSO}}"
+    text = SPEC.replace("scenes/*.yaml", source.replace("ALSO", also))
     spec.write_text(text)
     study = read_study(spec)
     assert [(scene.name, scene.preset) for scene in study.scenes] == [
