@@ -19,6 +19,7 @@ from evaluate.digest import digest
 from evaluate.placements import with_placements
 from evaluate.references import Reference
 from pcg.files import is_file
+from pcg.printable import one_line
 from pcg.validation import validated
 from planner import PlanResult, Settings, search, solve
 from planner.infeasible import with_proof
@@ -117,8 +118,9 @@ class ImportedPlanner:
         result = function(scene, settings, generator_of(seed), **self.options)
         time_s = time.perf_counter() - started
         if not isinstance(result, PlanResult):
-            found = type(result).__name__
-            raise TypeError(f"{self.function.text} returned a {found}, allowed is a planner.PlanResult")
+            raise TypeError(
+                f"{self.function.text} returned {one_line(repr(result), 100)}, allowed is a planner.PlanResult"
+            )
         counters = {name: v.item() if isinstance(v, np.generic) else v for name, v in result.counters.items()}
         result = replace(result, time_s=time_s, status=Status(result.status), counters=counters)
         return with_placements(result.to_plan(scene, settings, seed))

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from converter.shape import FloatArray
+from pcg.printable import one_line
 from planner.line_of_sight import goal_object_sees, goal_object_sees_if
 from planner.problem import Configuration, Problem
 
@@ -39,6 +40,18 @@ def scores_if(problem: Problem, configuration: Configuration, index: int, candid
     v_g = goal_object_sees_if(problem, configuration, index, candidates, configuration.agent)
     where = candidates if index == problem.goal_index else configuration.objects[problem.goal_index][None]
     return np.asarray(GOAL_WEIGHT * v_o + AGENT_WEIGHT * v_g + _distance_bonus(problem, where))
+
+
+def checked(heuristic: Heuristic) -> Heuristic:
+    """A heuristic from outside, which must give numbers that have an order; others raise a TypeError."""
+
+    def score(problem: Problem, configuration: Configuration) -> float:
+        value = heuristic(problem, configuration)
+        if not isinstance(value, (int, float, np.integer, np.floating)) or np.isnan(value):
+            raise TypeError(f"the heuristic returned {one_line(repr(value), 100)}, allowed are numbers")
+        return float(value)
+
+    return score
 
 
 def scores_by(heuristic: Heuristic) -> Callable[[Problem, Configuration, int, FloatArray], FloatArray]:

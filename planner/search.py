@@ -20,7 +20,7 @@ from converter.scene import Scene
 from converter.shape import FloatArray
 from planner.assemble import segments_of, subgoals_of
 from planner.frontier import Frontier, Node
-from planner.heuristics import Heuristic, score, scores_by, scores_if
+from planner.heuristics import Heuristic, checked, score, scores_by, scores_if
 from planner.original_problem import original_solver
 from planner.pick_place import PickPlace, PickPlaceSolver, Region
 from planner.problem import Configuration, Problem
@@ -109,8 +109,8 @@ class Search:
         self._generator = (generator or GENERATORS[settings.generator])(problem, settings)
         # Other generators say themselves where candidates come from.
         self._in_contact = generator is None and settings.generator == "Rnd"
-        self._score = heuristic or score
-        self._scores_of = scores_if if heuristic is None else scores_by(heuristic)
+        self._score = score if heuristic is None else checked(heuristic)
+        self._scores_of = scores_if if heuristic is None else scores_by(self._score)
         self._solver_for = subproblem_solvers(problem, settings, rng, self.counters, self._out_of_budget)
         self._solve = original_solver(problem, settings, rng, self.counters, self._out_of_budget)
         self._started = time.perf_counter()

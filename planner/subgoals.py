@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from converter.shape import FloatArray
+from pcg.printable import one_line
 from planner.heuristics import scores_if
 from planner.kernel import BoolArray, IntArray
 from planner.problem import Configuration, Problem
@@ -101,7 +102,7 @@ def propose_subgoals(
     if contacts is not None and rng.random() < settings.contact_share:
         candidates = rng.permutation(contacts())[: settings.candidates]
     if len(candidates) == 0:
-        candidates = generator.candidates(configuration, index, settings.candidates, rng)
+        candidates = _positions(generator.candidates(configuration, index, settings.candidates, rng))
         candidates = candidates[placeable(candidates)]
     scores = scores_of(problem, configuration, index, candidates)
     passed = np.arange(len(candidates))
@@ -110,6 +111,21 @@ def propose_subgoals(
         keep = max(settings.subgoals_per_object, round(settings.keep_share * len(candidates)))
         passed = filter_best(scores, keep, rng)
     return Proposal(candidates, scores, passed, rng.permutation(passed)[: settings.subgoals_per_object])
+
+
+def _positions(candidates: FloatArray) -> FloatArray:
+    """What a generator gave, which may come from outside."""
+    try:
+        positions = np.asarray(candidates, dtype=np.float64)
+    except (TypeError, ValueError):
+        positions = np.full(1, np.nan)
+    if positions.size == 0:
+        return np.empty((0, 2))
+    if positions.shape[1:] != (2,) or not np.isfinite(positions).all():
+        raise TypeError(
+            f"the subgoal generator returned {one_line(repr(candidates), 100)}, allowed are (k, 2) finite numbers"
+        )
+    return positions
 
 
 def filter_best(scores: FloatArray, keep: int, rng: np.random.Generator) -> IntArray:

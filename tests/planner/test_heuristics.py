@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from planner.heuristics import score, scores_if
+from planner.heuristics import checked, score, scores_if
 from planner.problem import Configuration, Problem
 from tests.planner.scenes import body, room, vectors, wall
 
@@ -59,3 +59,12 @@ def test_no_candidates_have_no_scores():
     problem = problem_with_wall()
     for index in (0, 1):
         assert scores_if(problem, problem.initial, index, np.empty((0, 2))).shape == (0,)
+
+
+@pytest.mark.parametrize("value", [None, "high", float("nan"), np.zeros(1), 1j])
+def test_heuristics_from_outside_give_numbers(value: object):
+    """What has no order cannot select a configuration."""
+    problem = problem_with_wall()
+    with pytest.raises(TypeError, match=r"the heuristic returned .*, allowed are numbers"):
+        checked(lambda *_: value)(problem, problem.initial)  # type: ignore[arg-type,return-value]  # what anybody may do
+    assert checked(lambda *_: np.float32(2))(problem, problem.initial) == 2.0

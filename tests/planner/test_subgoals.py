@@ -31,7 +31,7 @@ class Fixed:
     def candidates(self, configuration: Configuration, index: int, n: int, rng: np.random.Generator) -> FloatArray:
         """The first `n` of the positions."""
         del configuration, index, rng
-        return self.positions[:n]
+        return self.positions[:n] if isinstance(self.positions, np.ndarray) else self.positions
 
 
 def everywhere(positions: FloatArray) -> BoolArray:
@@ -162,3 +162,16 @@ def test_as_many_are_drawn_with_a_filter_as_without(settings: Settings):
     """Few candidates do not make the filter draw fewer subgoals."""
     positions = np.random.default_rng(2).uniform(-1.9, 1.9, (8, 2))
     assert len(propose(settings, positions).drawn) == settings.subgoals_per_object
+
+
+@pytest.mark.parametrize("given", ["nowhere", None, np.zeros(2), np.zeros((2, 3)), [[0.0, np.nan]], [[0.0, "x"]]])
+def test_generators_from_outside_give_positions(given: object):
+    """Anything else is said to be wrong where it comes from."""
+    with pytest.raises(TypeError, match=r"subgoal generator returned .*, allowed are \(k, 2\) finite numbers"):
+        propose(WITHOUT, given)  # type: ignore[arg-type]  # what somebody else's generator may do
+
+
+def test_generators_from_outside_may_give_lists():
+    """Lists of pairs, and none."""
+    assert propose(WITHOUT, [[0.0, 1.0]]).candidates.tolist() == [[0.0, 1.0]]  # type: ignore[arg-type]  # as above
+    assert propose(WITHOUT, []).candidates.shape == (0, 2)  # type: ignore[arg-type]  # as above
