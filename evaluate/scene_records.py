@@ -1,5 +1,6 @@
 """The scenes of a study with the best plan found for each, read one at a time."""
 
+import contextlib
 import json
 import sqlite3
 from collections.abc import Iterator
@@ -97,10 +98,11 @@ class _Cache:
         return self._known[hash_]
 
     def save(self) -> None:
-        """Writes the file if anything is new."""
+        """Writes the file if anything is new; who may not write there computes anew."""
         if self._changed:
             known = {hash_: asdict(statistics) for hash_, statistics in self._known.items()}
-            write_text(self._path, json.dumps({"version": CACHE_VERSION, "scenes": known}, indent=1) + "\n")
+            with contextlib.suppress(InputError):
+                write_text(self._path, json.dumps({"version": CACHE_VERSION, "scenes": known}, indent=1) + "\n")
 
 
 def _read(path: Path) -> dict[str, SceneStatistics]:

@@ -1,13 +1,16 @@
 """The trials of a study on disk: an SQLite database with one row per trial, failures included.
 
-One process writes (a lock sees to that), any number may read meanwhile. A row is on disk before the next result is
-taken, so whatever interrupts a study costs only the trials under way. Beside the trials are the scenes that they were
-run on, and what the study that last ran in the folder consists of: a folder needs no other file to be reported on.
+One process writes (a lock sees to that), any number may read meanwhile. A row is written before the next result is
+taken, so whatever ends a study costs only the trials under way. A machine that loses its power may lose the rows of the
+last seconds too: to wait for the disk after each would take several milliseconds, as long as many trials. Beside the
+trials are the scenes that they were run on, and what the study that last ran in the folder consists of: a folder needs
+no other file to be reported on.
 """
 
 import contextlib
 import fcntl
 import math
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, astuple, dataclass, fields, replace
@@ -26,7 +29,8 @@ from pcg.validation import Document, validated
 
 FILE_NAME = "trials.sqlite"
 LOCK_NAME = ".lock"
-_BESIDE = tuple(f"{FILE_NAME}-{suffix}" for suffix in ("wal", "shm", "journal"))
+_LOG = f"{FILE_NAME}-wal"
+_BESIDE = (_LOG, f"{FILE_NAME}-shm", f"{FILE_NAME}-journal")
 """Files that SQLite writes, the second even where it only reads."""
 VERSION = 2
 """`PRAGMA user_version` of the database."""
@@ -163,7 +167,7 @@ class StoredTrials:
             raise InputError(str(folder), f"no study: there is no file {FILE_NAME}")
         _require_no_links(folder, _BESIDE)
         with self._explained():
-            self._connection = sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro", uri=True)
+            self._connection = read_only(self._path)
             try:
                 _require_version(self._connection, self._path)
                 _require_tables(self._connection, self._path)
@@ -305,6 +309,17 @@ class TrialStore(StoredTrials):
             self._connection.execute("INSERT OR REPLACE INTO study VALUES (1, ?)", (document,))
 
 
+def read_only(path: Path) -> sqlite3.Connection:
+    """A connection that reads a database; others may write to it meanwhile.
+
+    SQLite keeps a database with a write-ahead log from those who may not write beside it, as they could not share the
+    log. Where there is no log nobody is writing, and the file can be read as one that does not change.
+    """
+    is_at_rest = not os.access(path.parent, os.W_OK) and not path.with_name(_LOG).exists()
+    uri = f"{path.resolve().as_uri()}?mode=ro{'&immutable=1' if is_at_rest else ''}"
+    return sqlite3.connect(uri, uri=True)
+
+
 def _scene_row(scene: Scene) -> tuple[str, str, bytes]:
     document = packed(scene_yaml.to_document(scene))
     return scene.name, scene.geometry_hash, document
@@ -315,7 +330,7 @@ def _opened(path: Path) -> sqlite3.Connection:
     try:
         _require_version(connection, path)
         _require_tables(connection, path, may_lack_some=True)
-        # With a write-ahead log others can read while this process writes, and a commit does not wait for the disk.
+        # With a write-ahead log others can read while this process writes, and few commits wait for the disk.
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = NORMAL")
         for table, columns in _TABLES.items():

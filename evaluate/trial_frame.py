@@ -7,7 +7,7 @@ import contextlib
 import json
 import sqlite3
 import tempfile
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 import polars as pl
 
 from evaluate.statistics import FloatArray
-from evaluate.store import FILE_NAME, StoredTrials, StudyRecord
+from evaluate.store import FILE_NAME, StoredTrials, StudyRecord, read_only
 from pcg import json_text
 from pcg.errors import InputError
 from pcg.files import replacing
@@ -43,6 +43,9 @@ _COLUMNS = {
 }
 """Columns of the frame: what they are in SQL, and their types."""
 
+_METHOD = ("method", "settings_hash")
+"""Columns that tell methods apart."""
+
 
 @contextlib.contextmanager
 def reading(folder: Path) -> Iterator[sqlite3.Connection]:
@@ -55,7 +58,7 @@ def reading(folder: Path) -> Iterator[sqlite3.Connection]:
     with StoredTrials(folder):
         path = folder / FILE_NAME
     try:
-        with contextlib.closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)) as connection:
+        with contextlib.closing(read_only(path)) as connection:
             yield connection
     except sqlite3.Error as error:
         raise InputError(str(path), f"not usable as a study's database: {error}") from None
@@ -76,7 +79,7 @@ def read_trials(folder: Path) -> pl.DataFrame:
     with StoredTrials(folder) as store, reading(folder) as connection:
         rows = connection.execute(f"SELECT {expressions} FROM trial ORDER BY rowid")  # noqa: S608  # no outside text
         frames = [pl.DataFrame(batch, schema=schema, orient="row") for batch in _batches(rows)]
-        labels = _method_labels(connection)
+        settings = _settings(connection)
         study = store.study()
     frame = pl.concat([pl.DataFrame(schema=schema), *frames])
     frame = frame if study is None else _of_study(frame, study)
@@ -84,8 +87,9 @@ def read_trials(folder: Path) -> pl.DataFrame:
         raise InputError(str(folder), "times and path lengths have to be finite")
     if frame.is_empty():
         raise InputError(str(folder), "the study holds no trials yet")
-    names = pl.DataFrame(labels, schema=["method", "settings_hash", "label"], orient="row")
-    frame = frame.join(names, on=["method", "settings_hash"], how="left", maintain_order="left")
+    labels = _method_labels({method: settings[method] for method in frame.select(_METHOD).unique().iter_rows()})
+    names = pl.DataFrame(labels, schema=[*_METHOD, "label"], orient="row")
+    frame = frame.join(names, on=_METHOD, how="left", maintain_order="left")
     return _with_scene_labels(frame.with_columns(method=pl.col("label")).drop("label"))
 
 
@@ -173,18 +177,23 @@ def _batches(rows: sqlite3.Cursor) -> Iterator[list[Any]]:
         yield batch
 
 
-def _method_labels(connection: sqlite3.Connection) -> list[tuple[str, str, str]]:
-    """Method, hash of its settings, and its name in the report, for all that occur."""
-    found: dict[str, dict[str, dict[str, Any]]] = {}
-    query = "SELECT method, settings_hash, settings FROM trial GROUP BY method, settings_hash ORDER BY min(rowid)"
+def _settings(connection: sqlite3.Connection) -> dict[tuple[str, str], dict[str, Any]]:
+    """The settings of each method by its name and their hash."""
+    found = {}
+    query = "SELECT method, settings_hash, settings FROM trial GROUP BY method, settings_hash"
     for method, hash_, settings in connection.execute(query):
         where = f"settings of {method!r}"
-        values = json_text.require_object(json_text.parse(settings, where), where)
-        found.setdefault(method, {})[hash_] = values
+        found[method, hash_] = json_text.require_object(json_text.parse(settings, where), where)
+    return found
+
+
+def _method_labels(settings: Mapping[tuple[str, str], dict[str, Any]]) -> list[tuple[str, str, str]]:
+    """Method, hash of its settings, and its name in the report."""
+    variants: dict[str, list[dict[str, Any]]] = {}
+    for (method, _), values in settings.items():
+        variants.setdefault(method, []).append(values)
     return [
-        (method, hash_, _label(method, hash_, settings, variants.values()))
-        for method, variants in found.items()
-        for hash_, settings in variants.items()
+        (method, hash_, _label(method, hash_, values, variants[method])) for (method, hash_), values in settings.items()
     ]
 
 

@@ -79,6 +79,20 @@ def test_readers_see_finished_rows_meanwhile(tmp_path: Path, row: TrialRow):
         assert list(reader.rows()) == [row]
 
 
+def test_folders_that_may_only_be_read(tmp_path: Path, row: TrialRow, monkeypatch: pytest.MonkeyPatch):
+    """Somebody else's results are read without a file being made beside them; a log that is there is read too."""
+    with TrialStore(tmp_path) as store:
+        store.add(row)
+        # Whoever runs this test may be allowed everything.
+        monkeypatch.setattr("os.access", lambda _path, _mode: False)
+        with StoredTrials(tmp_path) as reader:
+            assert list(reader.rows()) == [row]
+    before = sorted(tmp_path.iterdir())
+    with StoredTrials(tmp_path) as reader:
+        assert list(reader.rows()) == [row]
+        assert sorted(tmp_path.iterdir()) == before
+
+
 def test_readers_need_a_study(tmp_path: Path):
     """A folder without a database is refused, and stays as it was."""
     with pytest.raises(InputError, match=r"no study: there is no file trials\.sqlite"):

@@ -1,6 +1,7 @@
 """Trials as a data frame."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,17 @@ def test_methods_of_one_name_are_told_apart(make_study: Callable[..., Path], mak
     runs = [make_run("wall", "A", 0, 1.0, settings=settings) for settings in "xy"]
     folder = make_study(runs)
     assert names_in(read_trials(folder), "method") == ["A [name=x]", "A [name=y]"]
+
+
+def test_settings_of_earlier_studies_do_not_matter(make_study: Callable[..., Path], make_run: Callable[..., Any]):
+    """Where the study that last ran has one method of a name, it bears that name, whatever else the folder holds."""
+    folder = make_study([make_run("wall", "A", 0, 1.0, settings=settings) for settings in "xy"])
+    with TrialStore(folder) as store:
+        study = store.study()
+        assert study is not None
+        store.set_study(replace(study, methods=study.methods[1:]))
+    frame = read_trials(folder)
+    assert (len(frame), names_in(frame, "method")) == (1, ["A"])
 
 
 def test_parquet_holds_every_row_and_column_but_the_plans(two_methods: Path, tmp_path: Path):
