@@ -11,6 +11,7 @@ import polars as pl
 from evaluate.number_text import three_digits
 from evaluate.statistics import (
     RESAMPLES,
+    Comparison,
     FloatArray,
     Statistic,
     bootstrap_interval,
@@ -94,35 +95,34 @@ def _method_row(total: dict[str, Any], times: FloatArray, limit: float, rng: np.
 def comparison_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table | None:
     """Every pair of methods on the same scenes and seeds; None if no two methods share any."""
     times, limit = planning_times(frame), time_limit(frame)
-    rows = []
-    for first, second in combinations(names_in(frame, "method")[:MAX_COMPARED], 2):
+    methods, rows = names_in(frame, "method"), []
+    for first, second in combinations(methods[:MAX_COMPARED], 2):
         found = compare(times[first], times[second], limit, rng, resamples=_resamples(times[first]))
-        if not found.pairs:
-            continue
-        low, high = found.interval
-        rows.append(
-            (
-                Entry(f"{first} vs. {second}"),
-                Entry(str(found.pairs), value=found.pairs),
-                *(Entry(str(n), value=n) for n in (found.wins, found.ties, found.losses)),
-                Entry(" / ".join(map(str, found.scenes)), value=found.scenes[0]),
-                Entry(
-                    f"{_signed(found.difference)} ({_signed(low)} to {_signed(high)})",
-                    bold=low > 0 or high < 0,
-                    value=found.difference,
-                ),
-            )
-        )
+        if found.pairs:
+            rows.append(_comparison_row(f"{first} vs. {second}", found))
     if not rows:
         return None
     columns = ("methods", "runs", "wins", "ties", "losses", "scenes won / tied / lost", "difference [s]")
+    more = f" Of {len(methods)} methods the first {MAX_COMPARED} are compared." if len(methods) > MAX_COMPARED else ""
     note = (
         "The first method against the second on the same scenes and seeds. A run is won by the method that alone "
         "solves it, or is more than 10 % faster; a scene by mean PAR2. Difference: PAR2 of the first less that of the "
         "second, mean over the scenes; negative favours the first; 95 % bootstrap interval over scenes (over runs if "
-        "there is one scene), bold if it does not contain 0."
+        f"there is one scene), bold if it does not contain 0.{more}"
     )
     return Table("comparisons", "Pairs of methods", note, columns, tuple(rows))
+
+
+def _comparison_row(name: str, found: Comparison) -> tuple[Entry, ...]:
+    low, high = found.interval
+    difference = f"{_signed(found.difference)} ({_signed(low)} to {_signed(high)})"
+    return (
+        Entry(name),
+        Entry(str(found.pairs), value=found.pairs),
+        *(Entry(str(n), value=n) for n in (found.wins, found.ties, found.losses)),
+        Entry(" / ".join(map(str, found.scenes)), value=found.scenes[0]),
+        Entry(difference, bold=low > 0 or high < 0, value=found.difference),
+    )
 
 
 def time_limit(frame: pl.DataFrame) -> float:

@@ -79,7 +79,8 @@ def run(
     with StoredTrials(folder) as store:
         if out is not None:
             require_writable(out)
-        found = [_reported(row, out, verified=verify) for row in _chosen(store, choice)]
+        plans = verify or out is not None
+        found = [_reported(row, out, verified=verify) for row in _chosen(store, choice, plans=plans)]
     if not found:
         raise InputError(str(folder), "holds no such trial")
     if json:
@@ -96,8 +97,8 @@ _FIELDS = {"time [s]": "time_s"} | {
 }
 
 
-def _chosen(store: StoredTrials, choice: Choice) -> Iterator[TrialRow]:
-    rows = store.rows() if choice.key is None else iter(store.find(choice.key))
+def _chosen(store: StoredTrials, choice: Choice, *, plans: bool) -> Iterator[TrialRow]:
+    rows = store.rows(plans=plans) if choice.key is None else iter(store.find(choice.key))
     return (row for row in rows if choice.includes(row))
 
 

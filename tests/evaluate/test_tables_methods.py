@@ -1,11 +1,14 @@
 """Tables over all scenes."""
 
+import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from evaluate.tables_methods import comparison_table, methods_table, percent
+from evaluate.tables_methods import MAX_COMPARED, comparison_table, methods_table, percent
 from evaluate.trial_frame import read_trials
 
 
@@ -33,6 +36,17 @@ def test_comparison(two_methods: Path):
     assert table is not None
     assert [entry.text for entry in table.rows[0][:6]] == ["A vs. Btl", "4", "2", "0", "2", "1 / 0 / 1"]
     assert table.rows[0][6].value == pytest.approx(((1 + 3 - 4 - 20) / 2 + (40 - 1.2) / 2) / 2)
+
+
+def test_many_methods_are_not_all_compared(make_study: Callable[..., Path], make_run: Callable[..., Any]):
+    """Pairs of more methods than anybody reads are left out, and the note says so."""
+    names = [f"m{i:02}" for i in range(MAX_COMPARED + 1)]
+    table = comparison_table(
+        read_trials(make_study(make_run("wall", name, 0, 1.0) for name in names)), np.random.default_rng(0)
+    )
+    assert table is not None
+    assert len(table.rows) == math.comb(MAX_COMPARED, 2)
+    assert table.note.endswith(f" Of {len(names)} methods the first {MAX_COMPARED} are compared.")
 
 
 @pytest.mark.parametrize(
