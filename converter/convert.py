@@ -87,7 +87,7 @@ def _with_one_crate(level: Level, crate: Cell) -> Level:
         crates=[crate],
         targets=level.targets,
         name=level.name,
-        goal_crate=crate if level.goal_crate else None,
+        goal_crate=None if level.goal_crate is None else crate,
     )
 
 

@@ -22,9 +22,8 @@ def occluded(scene: Scene) -> bool:
     others = [body for body in (*scene.walls, *scene.objects) if body is not goal_object]
     intervals = ((0.0, scene.agent.height), goal_object.bottom_top)
     return any(
-        heights_meet(body.bottom_top, interval) and body_blocks(body, start, end)
+        any(heights_meet(body.bottom_top, interval) for interval in intervals) and body_blocks(body, start, end)
         for body in others
-        for interval in intervals
     )
 
 

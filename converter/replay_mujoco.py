@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from converter.formats.mjcf import AGENT, FLOOR, GRASP_PREFIX, body_names, mjcf_text
+from converter.formats.mjcf import AGENT_JOINTS, FLOOR, GRASP_PREFIX, body_names, mjcf_text
 from converter.plan import Plan
-from converter.scene import Scene
+from converter.scene import AGENT, Scene
 from converter.shape import FloatArray
 from converter.trajectory import NOTHING, SpeedProfile, TimedPlan
 from pcg.errors import InputError
@@ -126,7 +126,7 @@ class _World:
         self._data = self._engine.MjData(self._model)
         self._start = scene.agent.position
         # The agent's two joints and the first two numbers of each free joint are positions in the plane.
-        self._agent = np.array([self._model.joint(f"{AGENT}_{axis}").qposadr[0] for axis in "xy"])
+        self._agent = np.array([self._model.joint(name).qposadr[0] for name in AGENT_JOINTS])
         self._objects = np.array([self._model.joint(name).qposadr[0] + np.arange(2) for name in names])
         self._welds = [self._model.equality(GRASP_PREFIX + name).id for name in names]
         self._bodies = [self._model.body(name).id for name in names]

@@ -14,10 +14,13 @@ from typing import Any, Self
 
 import numpy as np
 
-from converter.shape import FloatArray, Part, frozen_array, rotation
+from converter.shape import FloatArray, Part, frozen_array, rotation, rounded
 
 OUTER_WALL_PREFIX = "outwall_"
 """Walls with this prefix bound the room; geometry presets move their inner faces."""
+
+AGENT = "agent"
+"""What the agent is called wherever bodies are named; no wall or object may be called so."""
 
 NUMERIC_SLACK = 1e-9
 """Slack of every geometric comparison [m], so that touching counts as free with tolerance 0."""
@@ -28,7 +31,7 @@ class Body:
     """A wall or a movable object: an upright prism over one or several rigidly joined convex parts.
 
     Attributes:
-        name: Unique in its scene.
+        name: Unique in its scene, and not `AGENT`.
         position: (3,) [m], world. Its x and y are the centre of the footprint, its z the middle of the height.
         height: Extent in z [m].
         parts: Convex parts of the footprint, in the frame of the body, before `yaw`.
@@ -174,6 +177,8 @@ class Scene:
         counts = Counter(body.name for body in (*self.walls, *self.objects))
         if repeated := sorted(name for name, count in counts.items() if count > 1):
             raise ValueError(f"names must be unique, found {', '.join(repeated)} twice")
+        if AGENT in counts:
+            raise ValueError(f"no wall or object may be called {AGENT!r}, which is what the agent is called")
         if self.goal.object not in self.object_names:
             raise ValueError(f"goal.object {self.goal.object!r} is not an object; there are {self.object_names}")
 
@@ -218,5 +223,4 @@ def heights_meet(first: tuple[float, float], second: tuple[float, float]) -> boo
 
 
 def _rounded(values: float | FloatArray) -> Any:
-    # Adding 0.0 turns -0.0 into 0.0, which would otherwise be another text.
-    return (np.round(np.asarray(values, dtype=np.float64), 9) + 0.0).tolist()
+    return rounded(values, 9).tolist()

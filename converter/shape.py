@@ -13,6 +13,10 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
+_STRAIGHT = 1e-9
+"""Largest distance [m] of a vertex inside the line through its neighbours that counts as lying on it: rounding alone
+bends a straight side inwards when a polygon is turned or shortened."""
+
 
 def frozen_array(values: npt.ArrayLike, shape: tuple[int | None, ...]) -> FloatArray:
     """A read-only float copy of `values`.
@@ -30,10 +34,15 @@ def frozen_array(values: npt.ArrayLike, shape: tuple[int | None, ...]) -> FloatA
     return array
 
 
+def rounded(values: npt.ArrayLike, digits: int) -> FloatArray:
+    """`values` to so many decimals; none of them is -0.0."""
+    # Adding 0.0 turns -0.0 into 0.0.
+    return np.asarray(np.round(np.asarray(values, dtype=np.float64), digits) + 0.0, dtype=np.float64)
+
+
 def denoised(values: npt.ArrayLike) -> FloatArray:
     """`values` rounded to 1e-12: sums of decimal numbers without the noise of floating-point arithmetic."""
-    # Adding 0.0 turns -0.0 into 0.0.
-    return np.asarray(np.round(np.asarray(values, dtype=np.float64), 12) + 0.0, dtype=np.float64)
+    return rounded(values, 12)
 
 
 def rotation(yaw: float) -> FloatArray:
@@ -47,7 +56,8 @@ class Part:
     """A convex polygon inflated by a disc.
 
     Attributes:
-        core: (n, 2) [m], body frame, counter-clockwise, n >= 1 (one point: a disc; two points: a capsule).
+        core: (n, 2) [m], body frame, counter-clockwise, n >= 1 (one point: a disc; two points: a capsule). Vertices may
+            lie on a straight side.
         edge_radius: Radius of the disc [m], >= 0.
     """
 
@@ -124,7 +134,8 @@ def _require_convex(core: FloatArray) -> None:
     lengths = np.hypot(*edges.T)
     if (lengths == 0).any():
         raise ValueError("two consecutive vertices of the polygon agree")
-    if (turns < 0).any() or not (turns > 0).any():
+    # What a vertex turns, by the line through its neighbours, is its distance from that line.
+    if (turns < -_STRAIGHT * np.hypot(*(edges + following).T)).any() or not (turns > 0).any():
         raise ValueError("the polygon must be convex with counter-clockwise vertices")
     angles = np.arctan2(turns, (edges * following).sum(axis=1))
     if not np.isclose(angles.sum(), 2 * np.pi):

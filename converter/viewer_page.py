@@ -34,7 +34,7 @@ from converter.render_plan import Placement, carries_of, placements
 from converter.render_scene import agent_shape, body_shape, object_color, room_drawing
 from converter.replay import replay
 from converter.scene import Body, Scene
-from converter.shape import FloatArray
+from converter.shape import FloatArray, rounded
 from converter.svg import Frame, hex_color, path_data
 from converter.theme import PAPER, Theme
 from pcg.files import write_text
@@ -157,8 +157,7 @@ def _shape(shape: Shape) -> dict[str, Any]:
 
 
 def _rounded(values: FloatArray) -> Any:
-    # Adding 0.0 turns -0.0 into 0.0.
-    return (np.round(values, DIGITS) + 0.0).tolist()
+    return rounded(values, DIGITS).tolist()
 
 
 def content_hash(text: str) -> str:

@@ -21,10 +21,8 @@ from typing import Any, Self
 import numpy as np
 import shapely  # type: ignore[import-untyped]  # shapely ships no types
 
-from converter.scene import NUMERIC_SLACK, Agent, Body
+from converter.scene import AGENT, NUMERIC_SLACK, Agent, Body
 from converter.shape import FloatArray
-
-AGENT = "agent"
 
 
 @dataclass(frozen=True, eq=False)

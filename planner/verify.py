@@ -16,10 +16,10 @@ from enum import StrEnum
 import numpy as np
 
 from converter.plan import Plan, Segment, Subgoal
-from converter.scene import NUMERIC_SLACK, Scene
+from converter.scene import AGENT, NUMERIC_SLACK, Scene
 from converter.shape import FloatArray
 from pcg.errors import InputError
-from planner.penetration import AGENT, Prism, deepest_contacts
+from planner.penetration import Prism, deepest_contacts
 
 TOUCH_SLACK = 1e-6
 """A grasp may leave a gap of the scene's tolerance plus this [m]; placements may differ from `subgoals` by this."""

@@ -25,14 +25,16 @@ from converter.formats.body_document import short
 from converter.formats.safe_names import safe_names
 from converter.outline import outline_polygon, rectangle_of
 from converter.render_scene import object_color
-from converter.scene import Body, Scene
+from converter.scene import AGENT, Body, Scene
 from converter.shape import FloatArray, Part, denoised
 from converter.theme import PAPER, Color
 from pcg.files import write_text
 
-AGENT = "agent"
 FLOOR = "floor"
 GOAL = "goal"
+AGENT_JOINTS = f"{AGENT}_x", f"{AGENT}_y"
+"""The agent's joints; a free joint is called after its object."""
+
 GRASP_PREFIX = "grasp_"
 """The weld between agent and object is called after the object's body, behind this prefix."""
 
@@ -72,7 +74,8 @@ class BodyNames:
 
 def body_names(scene: Scene) -> BodyNames:
     """The names of a scene's bodies in its MuJoCo model."""
-    names = safe_names([body.name for body in (*scene.walls, *scene.objects)], ("world", AGENT, FLOOR, GOAL))
+    reserved = ("world", AGENT, FLOOR, GOAL, *AGENT_JOINTS)
+    names = safe_names([body.name for body in (*scene.walls, *scene.objects)], reserved)
     return BodyNames(tuple(names[: len(scene.walls)]), tuple(names[len(scene.walls) :]))
 
 
@@ -193,13 +196,14 @@ def _add_agent(root: ET.Element, world: ET.Element, scene: Scene) -> None:
     body = _add(world, "body", name=AGENT, pos=_numbers([*agent.position, agent.height / 2]), childclass=AGENT)
     size = _numbers([agent.radius, agent.height / 2])
     _add(body, "geom", name=AGENT, size=size, rgba=_color(PAPER.agent))
-    for axis, direction, limits in zip("xy", ("1 0 0", "0 1 0"), scene.bounds.T - agent.position[:, None], strict=True):
-        _add(body, "joint", name=f"{AGENT}_{axis}", axis=direction, range=_numbers(denoised(limits)))
+    limits = scene.bounds.T - agent.position[:, None]
+    for joint, axis, ends in zip(AGENT_JOINTS, ("1 0 0", "0 1 0"), limits, strict=True):
+        _add(body, "joint", name=joint, axis=axis, range=_numbers(denoised(ends)))
     actuator = _add(root, "actuator")
     stiffness, damping = AGENT_MASS * SERVO_FREQUENCY**2, 2 * AGENT_MASS * SERVO_FREQUENCY
     for kind, gain in (("position", {"kp": _number(stiffness)}), ("velocity", {"kv": _number(damping)})):
-        for axis in "xy":
-            _add(actuator, kind, gain, name=f"{AGENT}_{kind}_{axis}", joint=f"{AGENT}_{axis}")
+        for axis, joint in zip("xy", AGENT_JOINTS, strict=True):
+            _add(actuator, kind, gain, name=f"{AGENT}_{kind}_{axis}", joint=joint)
     _add(_add(root, "contact"), "exclude", name=f"{AGENT}_{FLOOR}", body1="world", body2=AGENT)
 
 

@@ -9,7 +9,7 @@ from converter.formats.safe_names import safe_names
 from converter.plan import Plan
 from converter.replay import Step, replay
 from converter.scene import Scene
-from converter.shape import FloatArray
+from converter.shape import FloatArray, rounded
 from pcg.errors import InputError
 
 GOAL = "goal"
@@ -76,7 +76,7 @@ def _actions(scene: Scene, step: Step, names: list[str]) -> list[str]:
     lines = []
     for action, positions in (("pick", step.positions), ("place", step.end_positions)):
         place = positions[step.carried]
-        x, y = (round(float(value), 9) + 0.0 for value in place)
+        x, y = rounded(place, 9).tolist()
         lines.append(f"({action} {names[step.carried]} {_surface(scene, place)}) ; at {x} {y}")
     return lines
 

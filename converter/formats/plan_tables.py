@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from converter.shape import rounded
 from converter.trajectory import NOTHING, Trajectory
 from pcg.files import replacing, write_text
 
@@ -41,10 +42,9 @@ def csv_text(trajectory: Trajectory) -> str:
     columns = ["t", "mode", "held", "agent_x", "agent_y", "agent_vx", "agent_vy"]
     columns += [f"{name}_{axis}" for name in trajectory.names for axis in "xy"]
     places = trajectory.objects.reshape(len(trajectory.times), -1)
-    # Adding 0.0 turns -0.0 into 0.0.
-    motion = np.round(np.column_stack([trajectory.agent, trajectory.velocity, places]), _DIGITS) + 0.0
+    motion = rounded(np.column_stack([trajectory.agent, trajectory.velocity, places]), _DIGITS)
     held = [trajectory.names[index] if index != NOTHING else "" for index in trajectory.held]
-    times = np.round(trajectory.times, _DIGITS).tolist()
+    times = rounded(trajectory.times, _DIGITS).tolist()
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)

@@ -9,10 +9,9 @@ from converter.preview.checks import Problem, ProblemKind, SceneCheck, check_sce
 from converter.preview.driving import Drive, drive
 from converter.preview.playback import Playback, PlaybackProblem, PlaybackProblemKind, play_back
 from converter.preview.simulation import Moved, Touch
-from converter.preview.world import AGENT, ENGINE_SLACK
+from converter.preview.world import ENGINE_SLACK
 
 __all__ = [
-    "AGENT",
     "ENGINE_SLACK",
     "Drive",
     "Moved",

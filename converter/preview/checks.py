@@ -14,12 +14,10 @@ from itertools import product
 import numpy as np
 import pymunk
 
-from converter.preview.world import AGENT, ENGINE_SLACK, MEETS_AGENT, MEETS_GOAL_OBJECT, Placed, World
-from converter.scene import NUMERIC_SLACK, OUTER_WALL_PREFIX, Scene
+from converter.preview.simulation import MOVED
+from converter.preview.world import ENGINE_SLACK, MEETS_AGENT, MEETS_GOAL_OBJECT, Placed, World
+from converter.scene import AGENT, NUMERIC_SLACK, OUTER_WALL_PREFIX, Scene
 from converter.shape import FloatArray
-
-MOVED = 1e-3
-"""A body that the stepped world moves by more than this is not at rest [m]."""
 
 _STEPS, _TIME_STEP = 100, 0.01
 _COMPASS = 16

@@ -14,8 +14,7 @@ import numpy as np
 import pymunk
 
 from converter.preview.simulation import SPEED, Moved, Place, Simulation, Touch
-from converter.preview.world import AGENT
-from converter.scene import Scene
+from converter.scene import AGENT, Scene
 from converter.shape import FloatArray, frozen_array
 
 ARRIVED = 1e-3

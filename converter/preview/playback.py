@@ -19,9 +19,9 @@ import pymunk
 
 from converter.plan import Plan
 from converter.preview.simulation import MOVED, SPEED, Place, Simulation, reach
-from converter.preview.world import AGENT, Placed
+from converter.preview.world import Placed
 from converter.replay import Step, replay
-from converter.scene import Scene
+from converter.scene import AGENT, Scene
 from converter.shape import FloatArray
 
 TIME_STEP = 1 / 200
@@ -138,9 +138,8 @@ class _Player:
     def goal(self) -> Iterator[PlaybackProblem]:
         """Whether the goal-object is in the goal."""
         goal = self.scene.goal
-        placed = next(placed for placed in self.simulation.world.objects if placed.name == goal.object)
-        outside = np.maximum(np.abs(np.array(placed.place) - goal.position) - goal.size / 2, 0.0)
-        beyond = float(np.hypot(*outside))
+        placed = self.simulation.world.objects[self.scene.object_names.index(goal.object)]
+        beyond = goal.distance(np.array(placed.place))
         if beyond > MOVED:
             message = f"{goal.object} ends {beyond:.6g} m outside the goal"
             yield self._problem(PlaybackProblemKind.GOAL_MISSED, None, (goal.object,), beyond, message)

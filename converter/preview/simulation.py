@@ -97,12 +97,12 @@ class Simulation:
         for placed in self.world.movable:
             for shape in placed.shapes:
                 shape.friction = FRICTION
-        world = self.world
-        self._order = {placed.name: i for i, placed in enumerate([world.agent, *world.objects, *world.walls])}
+        everything = [self.world.agent, *self.world.objects, *self.world.walls]
+        self._order = {placed.name: i for i, placed in enumerate(everything)}
         self._touches: dict[tuple[str, str], Touch] = {}
         self._steps = 0
         self._pressed: dict[tuple[pymunk.Shape, pymunk.Shape], int] = {}
-        self._starts = {placed.name: (placed.place, placed.body.angle) for placed in self.world.objects}
+        self._starts = self._places()
 
     @property
     def touches(self) -> tuple[Touch, ...]:
@@ -122,7 +122,7 @@ class Simulation:
     def forget(self) -> None:
         """Forgets all contacts, and takes the present places for the starts of the objects."""
         self._touches.clear()
-        self._starts = {placed.name: (placed.place, placed.body.angle) for placed in self.world.objects}
+        self._starts = self._places()
 
     def moved(self, more_than: float = MOVED) -> tuple[Moved, ...]:
         """The objects that have moved since the last `forget`, with a corner at least, by `more_than` that [m]."""
@@ -133,6 +133,10 @@ class Simulation:
             if moved.distance + abs(moved.turned) * reach(placed) > more_than:
                 found.append(moved)
         return tuple(found)
+
+    def _places(self) -> dict[str, tuple[Place, float]]:
+        """Where each object is, and its angle [rad]."""
+        return {placed.name: (placed.place, placed.body.angle) for placed in self.world.objects}
 
     def _touch(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
         shapes = arbiter.shapes

@@ -17,10 +17,8 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from converter.scene import Body, Scene, heights_meet
+from converter.scene import AGENT, Body, Scene, heights_meet
 from converter.shape import FloatArray, Part, rotation
-
-AGENT = "agent"
 
 ENGINE_SLACK = 1e-6
 """Error that the engine's contact depths may have [m]; also the slack of an object's height above the floor."""
@@ -91,7 +89,7 @@ class World:
         self.space.collision_slop = self.allowed
         self.space.on_collision(begin=self._ignore_other_heights)
         self.owner: dict[pymunk.Shape, Placed] = {}
-        self._outlines: dict[pymunk.Shape, Part] = {}
+        self._outlines: dict[pymunk.Shape, tuple[FloatArray, float]] = {}
         self.walls = [self._place(wall, pymunk.Body.STATIC, self._category(wall)) for wall in scene.walls]
         self.objects = [self._place(body, pymunk.Body.DYNAMIC, MOVABLE) for body in scene.objects]
         agent = scene.agent
@@ -124,8 +122,8 @@ class World:
 
     def _outline(self, shape: pymunk.Shape) -> tuple[FloatArray, float]:
         """Core polygon (n, 2) [m], world, and edge radius [m]."""
-        part, body = self._outlines[shape], self.owner[shape].body
-        return part.core @ rotation(body.angle) + np.array(body.position), part.edge_radius
+        (core, radius), body = self._outlines[shape], self.owner[shape].body
+        return core @ rotation(body.angle) + np.array(body.position), radius
 
     def _contacts(self, placed: Placed) -> list[Contact]:
         return [
@@ -154,7 +152,7 @@ class World:
             # Shapes of one group do not collide: the parts of a body may overlap.
             shape.filter = pymunk.ShapeFilter(group=len(self.space.bodies), categories=categories)
             self.owner[shape] = placed
-        self._outlines.update(zip(shapes, (Part(c, r) for c, r in outlines), strict=True))
+        self._outlines.update(zip(shapes, outlines, strict=True))
         return placed
 
     def _category(self, wall: Body) -> int:

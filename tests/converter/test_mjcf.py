@@ -10,10 +10,10 @@ from hypothesis import given, settings
 
 from converter.convert import ConversionSettings, convert_level
 from converter.formats import read_scene, write_scene
-from converter.formats.mjcf import AGENT, FLOOR, GOAL, GRASP_PREFIX, Movable, body_names, mjcf_text
+from converter.formats.mjcf import FLOOR, GOAL, GRASP_PREFIX, Movable, body_names, mjcf_text
 from converter.outline import MAX_ERROR
 from converter.preset import with_preset
-from converter.scene import Agent, Body, Goal, Scene
+from converter.scene import AGENT, Agent, Body, Goal, Scene
 from converter.shape import Part, rotation
 from pcg.level import Level
 
@@ -180,15 +180,16 @@ def test_shapes_become_the_simplest_geoms():
 
 
 def test_names_that_mean_something_else_are_changed(small_room: Scene):
-    """A body may be called as the world, the agent or a wall, or like markup."""
-    objects = tuple(
-        replace(body, name=name) for body, name in zip(small_room.objects, ["world", "a<b&'\""], strict=True)
-    )
-    walls = (replace(small_room.walls[0], name=AGENT),)
-    scene = replace(small_room, objects=objects, walls=walls, goal=replace(small_room.goal, object="world"))
+    """A body may be called as the world, the agent's joints or, but for the case, the agent, or like markup."""
+    bodies = [
+        Body(name, np.array([x, 0.0, 0.1]), 0.2, (Part.box((0.2, 0.2)),))
+        for x, name in enumerate(["Agent", "world", "a<b&'\"", "agent_x"])
+    ]
+    goal = replace(small_room.goal, object="world")
+    scene = replace(small_room, walls=bodies[:1], objects=bodies[1:], goal=goal)
     names = body_names(scene)
-    assert names.walls == ("agent_2",)
-    assert names.objects == ("world_2", "a_b_")
+    assert names.walls == ("Agent_2",)
+    assert names.objects == ("world_2", "a_b_", "agent_x_2")
     model, _ = loaded(scene)
     assert {model.body(i).name for i in range(model.nbody)} == {"world", AGENT, *names.walls, *names.objects}
 

@@ -127,6 +127,13 @@ def test_bodies_at_different_heights_do_not_collide(z: float, valid: bool):  # n
     assert check_scene(room(body("beam", 1.1, -1, z=z))).valid is valid
 
 
+@pytest.mark.parametrize("yaw", np.linspace(0.1, 1.5, 8))
+def test_walls_with_a_vertex_on_a_side(yaw: float):
+    """However they are turned, they can be set up."""
+    core = np.array([[-0.3, -0.2], [0.1, -0.2], [0.3, -0.2], [0.3, 0.2], [-0.3, 0.2]])
+    assert check_scene(room(body("block", -1, 1, Part(core), yaw=yaw))).valid
+
+
 def test_out_of_bounds():
     """Centres have to lie in the bounds."""
     scene = replace(room(), walls=(), bounds=np.array([[-2.0, -0.9], [2.0, 2.0]]))

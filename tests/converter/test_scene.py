@@ -104,6 +104,10 @@ def test_geometry_is_what_a_body_fills():
         (lambda: replace(SCENE, tolerance=-1e-9), "tolerance -1e-09 must be >= 0"),
         (lambda: replace(SCENE, bounds=-SCENE.bounds), "the lower corner must be below the upper one"),
         (lambda: replace(SCENE, objects=(BODY, replace(BODY, name="w1"))), "names must be unique, found w1 twice"),
+        (
+            lambda: replace(SCENE, objects=(BODY, replace(BODY, name="agent"))),
+            "no wall or object may be called 'agent'",
+        ),
         (lambda: replace(SCENE, objects=(replace(BODY, name="box"),)), r"'obj' is not an object; there are \['box'\]"),
     ],
 )

@@ -4,7 +4,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converter.shape import Part, denoised
+from converter.shape import Part, denoised, rotation
 
 
 def outline(part: Part) -> shapely.Geometry:
@@ -45,6 +45,20 @@ def test_a_part_cannot_be_rounder_than_thin(edge_radius: float):
     """Two edge radii must fit; an inset polygon never turns inside out."""
     with pytest.raises(ValueError, match="too thin"):
         Part.box((0.4, 0.2)).with_edge_radius(edge_radius)
+
+
+@given(st.floats(-4, 4), st.floats(0.1, 0.9), st.floats(-9, 9))
+def test_a_vertex_may_lie_on_a_straight_side(yaw: float, share: float, offset: float):
+    """Turned, moved and rounded to picometres the polygon stays one, whichever way rounding bends the side."""
+    core = np.array([[0.0, 0.0], [1.3 * share, 0.7 * share], [1.3, 0.7], [1.0, 1.0], [0.0, 1.0]])
+    turned = Part(denoised(core @ rotation(yaw) + offset))
+    assert outline(turned).area == pytest.approx(outline(Part(core)).area)
+    rounded_corners = turned.with_edge_radius(0.01)
+    assert len(rounded_corners.core) == 5
+    bent = core.copy()
+    bent[1, 1] += 1e-6
+    with pytest.raises(ValueError, match="must be convex"):
+        Part(bent @ rotation(yaw) + offset)
 
 
 def test_denoised_numbers_are_decimals():

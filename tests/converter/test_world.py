@@ -8,8 +8,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converter.preview.world import AGENT, ENGINE_SLACK, World, signed_distance
-from converter.scene import Agent, Body, Goal, Scene
+from converter.preview.world import ENGINE_SLACK, World, signed_distance
+from converter.scene import AGENT, Agent, Body, Goal, Scene
 from converter.shape import FloatArray, Part, rotation
 
 
