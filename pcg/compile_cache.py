@@ -16,10 +16,19 @@ VARIABLE = "NUMBA_CACHE_DIR"
 
 def provide_compile_cache() -> None:
     """Sets `NUMBA_CACHE_DIR` if Numba would find no folder to write to; to be called before Numba is imported."""
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
     chosen = [Path(os.environ[VARIABLE])] if os.environ.get(VARIABLE) else []
-    if not any(_can_write(folder) for folder in (*chosen, Path(__file__).parent / "__pycache__", home)):
+    if not any(_can_write(folder) for folder in (*chosen, Path(__file__).parent / "__pycache__", *_user_caches())):
         os.environ[VARIABLE] = str(_private_folder())
+
+
+def _user_caches() -> list[Path]:
+    """The user's folder for caches; none for a user without a home."""
+    if os.environ.get("XDG_CACHE_HOME"):
+        return [Path(os.environ["XDG_CACHE_HOME"])]
+    try:
+        return [Path("~/.cache").expanduser()]
+    except RuntimeError:
+        return []
 
 
 def _can_write(folder: Path) -> bool:

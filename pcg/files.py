@@ -24,7 +24,7 @@ def read_bytes(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
     Raises:
         InputError: the file is missing, is a folder, may not be read or is larger.
     """
-    with _explained(path), path.open("rb") as file:
+    with _reading(path), path.open("rb") as file:
         data = file.read(max_bytes + 1)
     if len(data) > max_bytes:
         raise InputError(str(path), f"larger than {max_bytes / 1e6:g} MB, the most that is read")
@@ -51,7 +51,7 @@ def iter_lines(path: Path) -> Iterator[tuple[int, str]]:
     Raises:
         InputError: as `read_text`, or there are more lines or longer ones; when that line is reached.
     """
-    with _explained(path), path.open("rb") as file:
+    with _reading(path), path.open("rb") as file:
         for number in itertools.count(1):
             data = file.readline(MAX_LINE_BYTES + 1)
             if not data:
@@ -79,7 +79,7 @@ def _line(data: bytes, where: str, encoding: str) -> str:
 
 
 @contextlib.contextmanager
-def _explained(path: Path) -> Iterator[None]:
+def _reading(path: Path) -> Iterator[None]:
     try:
         yield
     except FileNotFoundError:
@@ -94,20 +94,27 @@ def _explained(path: Path) -> Iterator[None]:
 
 
 @contextlib.contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    """Says of which file a step of writing fails, not of which temporary one."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        problem = error.strerror if isinstance(error, OSError) else error
+        raise InputError(str(path), f"cannot be written: {problem}") from None
+
+
+@contextlib.contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yields a temporary path beside `path` (same suffix); on success it replaces `path` in one step.
 
     Missing folders are made. If the block raises, `path` is left as it was.
 
     Raises:
-        InputError: the folder cannot be made or written to.
+        InputError: the folder cannot be made or written to, or `path` is a folder.
     """
-    try:
+    with _writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:100]}-", suffix=path.suffix)
-    except (OSError, ValueError) as error:
-        problem = error.strerror if isinstance(error, OSError) else error
-        raise InputError(str(path), f"cannot be written: {problem}") from None
     os.close(handle)
     temporary = Path(name)
     try:
@@ -116,7 +123,8 @@ def replacing(path: Path) -> Iterator[Path]:
         umask = os.umask(0)
         os.umask(umask)
         temporary.chmod(0o666 & ~umask)
-        temporary.replace(path)
+        with _writing(path):
+            temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
 

@@ -80,8 +80,10 @@ def read_frozen(path: Path) -> FrozenTiles:
     Raises:
         InputError: naming file, line and reason.
     """
-    lines = list(enumerate(read_text(path).split("\n"), start=1))
-    rows = [(number, line.rstrip()) for number, line in lines if line.startswith("#")]
+    lines = enumerate(read_text(path).split("\n"), start=1)
+    rows = [(number, line.rstrip()) for number, line in lines if line.strip()]
+    walls = [i for i, (_, line) in enumerate(rows) if line.startswith("#")]
+    rows = rows[walls[0] : walls[-1] + 1] if walls else []
     if len(rows) < 3:
         raise InputError(str(path), "no frozen tiles found: at least three lines have to begin with a wall '#'")
     width = len(rows[0][1])
@@ -89,7 +91,7 @@ def read_frozen(path: Path) -> FrozenTiles:
         raise InputError(str(path), f"{len(rows)} x {width} cells; at most {MAX_SIDE} x {MAX_SIDE} are read")
     tiles = [_row(f"{path}: line {number}", line, width) for number, line in rows]
     for (number, line), is_edge in zip(rows, [True, *[False] * (len(rows) - 2), True], strict=True):
-        if not (line.endswith("#") and (not is_edge or set(line) == {"#"})):
+        if line[0] + line[-1] != "##" or (is_edge and set(line) != {"#"}):
             raise InputError(f"{path}: line {number}", "the outer wall has a gap; every row begins and ends with '#'")
     inner = np.array(tiles, dtype=np.uint8)[1:-1, 1:-1]
     if inner.size == 0:

@@ -4,6 +4,7 @@ import os
 import stat
 import tempfile
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -11,18 +12,23 @@ from pcg import compile_cache
 from pcg.compile_cache import VARIABLE, provide_compile_cache
 
 
+@pytest.fixture(autouse=True)
+def unset(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is chosen, and what a test makes the program choose does not outlast it."""
+    monkeypatch.setenv(VARIABLE, "")
+    monkeypatch.delenv(VARIABLE)
+
+
 @pytest.fixture
 def nothing_writable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Only the folder for temporary files can be written to; returns it."""
-    monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.setattr(compile_cache, "_can_write", lambda _: False)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     return tmp_path
 
 
-def test_numba_chooses_where_it_can(monkeypatch: pytest.MonkeyPatch):
+def test_numba_chooses_where_it_can():
     """In a checkout nothing is set: the cache lies beside the source."""
-    monkeypatch.delenv(VARIABLE, raising=False)
     provide_compile_cache()
     assert VARIABLE not in os.environ
 
@@ -42,6 +48,20 @@ def test_a_private_folder_takes_their_place(nothing_writable: Path):
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     provide_compile_cache()
     assert os.environ[VARIABLE] == str(folder)
+
+
+@pytest.mark.usefixtures("nothing_writable")
+def test_a_user_may_have_no_home(monkeypatch: pytest.MonkeyPatch):
+    """Containers run as users whom the system does not know; without a home the folder is temporary, too."""
+
+    def unknown(user: int) -> NoReturn:
+        raise KeyError(user)
+
+    for variable in ("HOME", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("pwd.getpwuid", unknown)
+    provide_compile_cache()
+    assert Path(os.environ[VARIABLE]).is_dir()
 
 
 @pytest.mark.parametrize("kind", ["open", "link", "file"])

@@ -70,7 +70,11 @@ def test_a_failure_leaves_the_old_file(tmp_path: Path):
 
 
 def test_what_cannot_be_written_is_named(tmp_path: Path):
-    """A file in place of a folder."""
+    """A file in place of a folder, and a folder in place of the file; no temporary file is named or stays."""
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match=r"a\.txt: cannot be written: "):
         write_text(tmp_path / "file" / "a.txt", "text")
+    (tmp_path / "a.txt").mkdir()
+    with pytest.raises(InputError, match=f"^{tmp_path}/a\\.txt: cannot be written: "):
+        write_text(tmp_path / "a.txt", "text")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.txt", "file"]

@@ -30,6 +30,8 @@ def test_frozen_tiles_are_read(tmp_path: Path):
         ("####\n#?#\n####\n", "line 2: 3 characters, but the first line has 4"),
         ("####\n#???\n####\n", "line 2: the outer wall has a gap"),
         ("####\n#??#\n#??#\n", "line 3: the outer wall has a gap"),
+        ("####\n ??#\n#??#\n####\n", "line 2: the outer wall has a gap"),
+        ("####\n#??#\nremark\n####\n", "line 3: 6 characters, but the first line has 4"),
         ("##\n##\n##\n", "the walls enclose no cell"),
         ("#" * 1001 + "\n#\n#\n", "at most 1000 x 1000"),
     ],
