@@ -102,13 +102,11 @@ def solve(
     if level.tiles.size > MAX_CELLS:
         return Solution(SolverStatus.LIMIT)
     width = level.shape[1] + 2
+    wall = np.pad(level.is_wall, 1, constant_values=True).astype(np.uint8).ravel()
+    targets = np.array([_number(cell, width) for cell in level.targets], dtype=np.int32)
     search = {Objective.PUSHES: kernel.fewest_pushes, Objective.MOVES: kernel.fewest_moves}[objective]
     outcome, states, path = search(
-        kernel.make_board(
-            np.pad(level.is_wall, 1, constant_values=True).astype(np.uint8).ravel(),
-            width,
-            np.array([_number(cell, width) for cell in level.targets], dtype=np.int32),
-        ),
+        kernel.make_board(wall, width, targets),
         _number(player, width),
         np.array([_number(cell, width) for cell in level.crates], dtype=np.int16),
         0 if goal_crate is None else _number(goal_crate, width),
@@ -119,7 +117,8 @@ def solve(
         return Solution(status, states=states)
     pushes = [(_cell(crate, width), _cell(crate + step, width)) for crate, step in path.tolist()]
     lurd = _with_walks(level, pushes)
-    return Solution(status, len(pushes), len(lurd), lurd, _crate_on_first_target(level, pushes), states)
+    crate, _ = kernel.start_of(path, targets[0])
+    return Solution(status, len(pushes), len(lurd), lurd, _cell(crate, width), states)
 
 
 def goal_crate_of(level: Level, solution: Solution) -> Cell:
@@ -163,11 +162,3 @@ def _with_walks(level: Level, path: list[tuple[Cell, Cell]]) -> str:
         free[crate], free[beyond] = True, False
         player = crate
     return "".join(lurd)
-
-
-def _crate_on_first_target(level: Level, path: list[tuple[Cell, Cell]]) -> Cell:
-    cell = level.targets[0]
-    for crate, beyond in reversed(path):
-        if beyond == cell:
-            cell = crate
-    return cell

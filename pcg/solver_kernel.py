@@ -262,6 +262,17 @@ def _path(parents: Int32Array, pushed: Int16Array, steps: Int16Array, index: int
 
 
 @njit(cache=True)
+def start_of(path: Int32Array, end: int) -> tuple[int, int]:
+    """Where the crate began that the (n, 2) pushes of `path` bring to the cell `end`, and how many of them are its own."""
+    start, own_pushes = end, 0
+    for k in range(len(path) - 1, -1, -1):
+        if path[k, 0] + path[k, 1] == start:
+            start = path[k, 0]
+            own_pushes += 1
+    return start, own_pushes
+
+
+@njit(cache=True)
 def fewest_pushes(  # noqa: C901, PLR0912, PLR0915  # one compiled loop over arrays that it alone grows
     board: Board, player: int, crates: Int16Array, goal: int, max_states: int
 ) -> tuple[int, int, Int32Array]:

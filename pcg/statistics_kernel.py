@@ -16,8 +16,10 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from pcg.dependency_kernel import depends
 from pcg.level import Tile, TileArray
-from pcg.solver_kernel import SOLVED, ByteArray, Int32Array, WordArray, fewest_pushes, make_board
+from pcg.region_kernel import Scratch, count_regions, fill, make_scratch, parts_around, visit
+from pcg.solver_kernel import SOLVED, ByteArray, Int32Array, WordArray, fewest_pushes, make_board, start_of
 
 IntArray = npt.NDArray[np.int64]
 Float32Array = npt.NDArray[np.float32]
@@ -85,29 +87,6 @@ def make_judge(archive: TileArray, max_crates: int, max_states: int, bits: int =
     return Judge(keys, verdicts, np.zeros(2, dtype=np.int64), archive, max_crates, max_states)
 
 
-class _Scratch(NamedTuple):
-    """Memory that is used for one map after the other.
-
-    Attributes:
-        board: (cells,) tiles with a border of wall.
-        width: Cells of a row of the board.
-        unvisited: (cells,) flags.
-        queue: (cells,) cells.
-    """
-
-    board: ByteArray
-    width: int
-    unvisited: ByteArray
-    queue: Int32Array
-
-
-@njit(cache=True)
-def _make_scratch(rows: int, columns: int) -> _Scratch:
-    size = (rows + 2) * (columns + 2)
-    board, unvisited = np.full(size, WALL, dtype=np.uint8), np.zeros(size, dtype=np.uint8)
-    return _Scratch(board, columns + 2, unvisited, np.empty(size, dtype=np.int32))
-
-
 @njit(cache=True)
 def measure(maps: TileArray, chosen: IntArray, statistics: Int32Array, judge: Judge) -> None:
     """Writes the statistics of the chosen maps.
@@ -118,15 +97,15 @@ def measure(maps: TileArray, chosen: IntArray, statistics: Int32Array, judge: Ju
         statistics: (n, len(Column)), written to.
         judge: Decides about furnished maps.
     """
-    scratch = _make_scratch(maps.shape[1], maps.shape[2])
+    scratch = make_scratch(maps.shape[1], maps.shape[2])
     for index in chosen:
         row = statistics[index]
         row[:] = 0
         for tile in maps[index].flat:
             if tile != FLOOR:
                 row[_column_of(tile)] += 1
-        _fill(scratch, maps[index])
-        row[_REGIONS] = _count_regions(scratch)
+        fill(scratch, maps[index])
+        row[_REGIONS] = count_regions(scratch)
         _judge(maps[index], row, judge, scratch)
 
 
@@ -144,7 +123,7 @@ def edit(
         statistics: (n, len(Column)), true before, and after.
         judge: Decides about furnished maps.
     """
-    scratch = _make_scratch(maps.shape[1], maps.shape[2])
+    scratch = make_scratch(maps.shape[1], maps.shape[2])
     for k in range(chosen.size):
         tiles_of_map, row = maps[chosen[k]], statistics[chosen[k]]
         i, j = cells[k] // maps.shape[2], cells[k] % maps.shape[2]
@@ -155,7 +134,7 @@ def edit(
         if after != FLOOR:
             row[_column_of(after)] += 1
         if before == WALL or after == WALL:  # noqa: PLR1714  # a tuple of two types of integers is not compiled
-            _update_regions(tiles_of_map, i, j, row, scratch)
+            row[_REGIONS] = _regions_after(tiles_of_map, i, j, row[_REGIONS], scratch)
         _judge(tiles_of_map, row, judge, scratch)
 
 
@@ -166,22 +145,14 @@ def _column_of(tile: int) -> int:
 
 
 @njit(cache=True)
-def _fill(scratch: _Scratch, tiles: TileArray) -> None:
-    rows, columns = tiles.shape
-    for i in range(rows):
-        for j in range(columns):
-            scratch.board[(i + 1) * scratch.width + j + 1] = tiles[i, j]
-
-
-@njit(cache=True)
-def _judge(tiles: TileArray, row: Int32Array, judge: Judge, scratch: _Scratch) -> None:
+def _judge(tiles: TileArray, row: Int32Array, judge: Judge, scratch: Scratch) -> None:
     """Writes the columns from SOLVABLE on; the counts are up to date."""
     row[_SOLVABLE:] = 0
     row[_GOAL] = -1
     row[_NOVELTY] = _novelty(tiles, judge.archive)
     if row[_PLAYERS] != 1 or row[_REGIONS] != 1 or not 1 <= row[_TARGETS] <= row[_CRATES] <= judge.max_crates:
         return
-    _fill(scratch, tiles)
+    fill(scratch, tiles)
     _look_up(row, judge, scratch)
     if row[_SOLVABLE]:
         row[_OCCLUDED] = _is_occluded(tiles, row[_GOAL])
@@ -189,78 +160,19 @@ def _judge(tiles: TileArray, row: Int32Array, judge: Judge, scratch: _Scratch) -
 
 
 @njit(cache=True)
-def _update_regions(tiles: TileArray, i: int, j: int, row: Int32Array, scratch: _Scratch) -> None:
-    """Brings the number of regions up to date after a wall came to or went from cell (i, j).
-
-    If the free cells among the four neighbours are connected within the eight around the cell, their number stays the
-    same. That is so if the number of Yokoi, Toriwaki and Fukumura (1975) for four-connectivity is 1, or 0 with all
-    eight free.
-    """
-    is_free = _free_around(tiles, i, j)
-    neighbours, crossings = 0, 0
-    for k in range(0, 8, 2):
-        neighbours += is_free[k]
-        crossings += is_free[k] - is_free[k] * is_free[k + 1] * is_free[(k + 2) % 8]
-    if neighbours == 0:
-        row[_REGIONS] += -1 if tiles[i, j] == WALL else 1
-    elif crossings > 1:
-        _fill(scratch, tiles)
-        row[_REGIONS] = _count_regions(scratch)
+def _regions_after(tiles: TileArray, i: int, j: int, before: int, scratch: Scratch) -> int:
+    """The number of regions after a wall came to or went from cell (i, j)."""
+    parts = parts_around(tiles, i, j)
+    if parts == 1:
+        return before
+    if parts == 0:
+        return before + (-1 if tiles[i, j] == WALL else 1)
+    fill(scratch, tiles)
+    return count_regions(scratch)
 
 
 @njit(cache=True)
-def _free_around(tiles: TileArray, i: int, j: int) -> tuple[int, int, int, int, int, int, int, int]:
-    """Flags of the eight cells around (i, j) without wall, from the right one counter-clockwise."""
-    return (
-        _is_free(tiles, i, j + 1),
-        _is_free(tiles, i - 1, j + 1),
-        _is_free(tiles, i - 1, j),
-        _is_free(tiles, i - 1, j - 1),
-        _is_free(tiles, i, j - 1),
-        _is_free(tiles, i + 1, j - 1),
-        _is_free(tiles, i + 1, j),
-        _is_free(tiles, i + 1, j + 1),
-    )
-
-
-@njit(cache=True)
-def _is_free(tiles: TileArray, i: int, j: int) -> int:
-    inside = 0 <= i < tiles.shape[0] and 0 <= j < tiles.shape[1]
-    return 1 if inside and tiles[i, j] != WALL else 0
-
-
-@njit(cache=True)
-def _visit(cell: int, width: int, unvisited: ByteArray, queue: Int32Array) -> int:
-    """Clears the flags of all cells connected to `cell`, lists them in `queue` and returns their number."""
-    unvisited[cell] = 0
-    queue[0] = cell
-    begin, end = 0, 1
-    while begin < end:
-        cell = queue[begin]
-        begin += 1
-        for step in (-1, -width, 1, width):
-            if unvisited[cell + step]:
-                unvisited[cell + step] = 0
-                queue[end] = cell + step
-                end += 1
-    return end
-
-
-@njit(cache=True)
-def _count_regions(scratch: _Scratch) -> int:
-    unvisited = scratch.unvisited
-    for cell in range(unvisited.size):
-        unvisited[cell] = scratch.board[cell] != WALL
-    regions = 0
-    for cell in range(unvisited.size):
-        if unvisited[cell]:
-            regions += 1
-            _visit(cell, scratch.width, unvisited, scratch.queue)
-    return regions
-
-
-@njit(cache=True)
-def _look_up(row: Int32Array, judge: Judge, scratch: _Scratch) -> None:
+def _look_up(row: Int32Array, judge: Judge, scratch: Scratch) -> None:
     """Writes solvability, pushes, goal crate and dependency of a furnished map, from the cache if it is there."""
     low, high = _key(scratch)
     slot = np.int64(low & np.uint64(judge.keys.shape[0] - 1))
@@ -285,7 +197,7 @@ def _mixed(value: np.uint64) -> np.uint64:
 
 
 @njit(cache=True)
-def _key(scratch: _Scratch) -> tuple[np.uint64, np.uint64]:
+def _key(scratch: Scratch) -> tuple[np.uint64, np.uint64]:
     """Two hashes of the board with the player's region marked instead of the player."""
     board, unvisited, player = scratch.board, scratch.unvisited, 0
     for cell in range(board.size):
@@ -293,7 +205,7 @@ def _key(scratch: _Scratch) -> tuple[np.uint64, np.uint64]:
         if board[cell] == PLAYER:
             player = cell
     first_of_region = board.size
-    for k in range(_visit(player, scratch.width, unvisited, scratch.queue)):
+    for k in range(visit(player, scratch.width, unvisited, scratch.queue)):
         first_of_region = min(first_of_region, scratch.queue[k])
     low, high = _mixed(np.uint64(first_of_region + board.size * scratch.width)), np.uint64(0)
     for cell in range(board.size):
@@ -315,21 +227,9 @@ def _verdict(board: ByteArray, width: int, max_states: int) -> tuple[int, int, i
     status, _, path = fewest_pushes(make_board(wall, width, targets), player, crates, 0, max_states)
     if status != SOLVED:
         return 0, 0, -1, 0
-    goal, own_pushes = targets[0], 0
-    for k in range(len(path) - 1, -1, -1):
-        if path[k, 0] + path[k, 1] == goal:
-            goal = path[k, 0]
-            own_pushes += 1
+    goal, _ = start_of(path, targets[0])
     number = (goal // width - 1) * (width - 2) + goal % width - 1
-    if own_pushes == len(path):
-        # No other crate moves, so they might as well be walls.
-        return 1, len(path), number, 0
-    for crate in crates:
-        wall[crate] = crate != goal
-    alone = np.empty(1, dtype=np.int16)
-    alone[0] = goal
-    status, _, _ = fewest_pushes(make_board(wall, width, targets[:1]), player, alone, 0, max_states)
-    return 1, len(path), number, int(status != SOLVED)
+    return 1, len(path), number, int(depends(wall, width, player, crates, targets[0], path, max_states))
 
 
 @njit(cache=True)
@@ -364,7 +264,7 @@ def _is_occluded(tiles: TileArray, goal: int) -> bool:
 
 
 @njit(cache=True)
-def _clearance(scratch: _Scratch) -> int:
+def _clearance(scratch: Scratch) -> int:
     board, width = scratch.board, scratch.width
     clearance = 8
     for cell in range(board.size):

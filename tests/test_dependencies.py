@@ -41,8 +41,10 @@ HOMES = {
         "pcg/learning_curve.py",
     },
     "numba": {
+        "pcg/dependency_kernel.py",
         "pcg/episode_kernel.py",
         "pcg/random_kernel.py",
+        "pcg/region_kernel.py",
         "pcg/reward.py",
         "pcg/scalar_kernel.py",
         "pcg/solver_kernel.py",
