@@ -26,3 +26,4 @@ def test_long_messages_lose_their_middle():
     assert line.startswith("where: x")
     assert line.endswith("x why")
     assert "x…x" in line
+    assert one_line("123456789", 6) == "123…89"
