@@ -86,11 +86,12 @@ def _dot(position: FloatArray, score: float, scores: FloatArray, unit: float, th
 
 
 def _legend(scores: FloatArray, center: FloatArray, unit: float, theme: Theme) -> list[Item]:
-    """A dot and a number for each score that occurs."""
+    """What the colours stand for: a dot and a number for each score that occurs."""
     values = np.unique(scores)
     step = 55.0 * unit
-    left = center[0] - step * (len(values) - 1) / 2
-    items: list[Item] = []
+    left = center[0] - step * (len(values) - 2) / 2
+    heading = np.array([left - step, center[1]])
+    items: list[Item] = [Label("score", heading, theme.text_height * unit, theme.outline)] if len(values) else []
     for i, value in enumerate(values):
         dot, number = np.array([[-14.0, 0.0], [6.0, 0.0]]) * unit + [left + i * step, center[1]]
         items.append(_dot(dot, value, scores, unit, theme))

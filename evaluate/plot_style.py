@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 import matplotlib as mpl
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from pcg.files import replacing
 
@@ -62,6 +64,22 @@ def paper_style() -> Iterator[None]:
         mpl.rcdefaults()
         mpl.rcParams.update(_STYLE)
         yield
+
+
+def label_logarithmic(axis: Axis) -> None:
+    """Labels a logarithmic axis by plain numbers that do not run into each other: 0.01, 0.02, 0.05 or decades alone.
+
+    An axis of less than a decade grows to one. Call it when everything is drawn.
+    """
+    low, high = sorted(axis.get_view_interval())
+    if (missing := 10 * low / high) > 1:
+        low, high = low / missing**0.5, high * missing**0.5
+        set_limits = axis.axes.set_xlim if axis is axis.axes.xaxis else axis.axes.set_ylim
+        set_limits(low, high)
+    within_decades = (1.0, 2.0, 5.0) if high < 100 * low else (1.0,)
+    axis.set_major_locator(LogLocator(subs=within_decades))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def figure_bytes(figure: Figure, format_: str) -> bytes:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
-from evaluate.plot_style import COLUMN_WIDTH, TEXT_WIDTH, color_of, dashes_of, paper_style
+from evaluate.plot_style import COLUMN_WIDTH, TEXT_WIDTH, color_of, dashes_of, label_logarithmic, paper_style
 from evaluate.scene_groups import Grouping
 from evaluate.statistics import FloatArray, solved_within, wilson_interval
 from evaluate.tables_success import success_counts
@@ -80,6 +80,7 @@ def times_plot(frame: pl.DataFrame) -> Plot:
             ax.set_title(_plain(scene), fontsize=7)
             if i % columns == 0:
                 ax.set_ylabel("time [s]")
+        label_logarithmic(axes[0].yaxis)
         for ax in axes[len(scenes) :]:
             ax.set_axis_off()
         _legend(figure, methods)
@@ -105,6 +106,7 @@ def curves_plot(frame: pl.DataFrame) -> Plot:
                 y = np.concatenate([[0.0], shares, shares[-1:]])
                 ax.step(x, y, where="post", color=color_of(i), linestyle=dashes_of(i), label=_plain(method))
         ax.set_xscale("log")
+        label_logarithmic(ax.xaxis)
         ax.set_xlabel("time [s]")
         ax.set_ylabel("runs solved")
         ax.set_ylim(0, 1.02)
@@ -170,7 +172,11 @@ def _success(ax: Axes, frame: pl.DataFrame, grouping: Grouping, methods: Sequenc
         limits = np.array([wilson_interval(int(s), int(n)) for s, n in zip(solved, trials, strict=True)]).T
         rates = solved / trials
         errors = np.abs(limits - rates)
-        ax.errorbar(x, rates, errors, color=color_of(i), linestyle="none", marker="o", markersize=3, elinewidth=0.8)
+        bars = ax.errorbar(
+            x, rates, errors, color=color_of(i), linestyle="none", marker="o", markersize=3, elinewidth=0.8
+        )
+        for artist in bars.get_children():
+            artist.set_clip_on(False)  # all of the dots at 100 %
     names = [f"{_plain(name)}\n({len(members)})" for name, members in grouping.groups.items()]
     ax.set_xticks(range(len(names)), names)
     ax.tick_params(axis="x", length=0)

@@ -48,7 +48,8 @@ def success_table(
                 row.append(BLANK if share is None else Entry(percent(share), value=share))
         rows.append(tuple(row))
     heads = [head for method in methods for head in ([method, f"{method} {PAPER}"] if method in known else [method])]
-    note = "Share of the runs that end with a verified plan, its 95 % Wilson interval [%], and the runs solved of all."
+    paper = " Columns marked (paper): the paper's 360 generated scenes, which are others." if known else ""
+    note = f"Share of the runs with a verified plan, its 95 % Wilson interval [%], and the runs solved of all.{paper}"
     title = f"Success by {grouping.title}"
     return Table(f"success-{grouping.name}", title, note, ("scenes", "number", *heads), tuple(rows))
 

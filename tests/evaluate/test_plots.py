@@ -1,12 +1,14 @@
 """Plots of a study."""
 
+import itertools
 import re
 from pathlib import Path
 
 import polars as pl
 import pytest
+from matplotlib.figure import Figure
 
-from evaluate.plot_style import FORMATS, figure_bytes, inline_svg
+from evaluate.plot_style import COLUMN_WIDTH, FORMATS, figure_bytes, inline_svg, label_logarithmic, paper_style
 from evaluate.plots import CURVE_POINTS, curves_plot, plots_of, times_plot
 from evaluate.scene_groups import Grouping
 from evaluate.trial_frame import read_trials
@@ -45,6 +47,27 @@ def test_curves_end_at_the_share_of_runs_solved(two_methods: Path):
     lines = curves_plot(read_trials(two_methods)).figure.axes[0].lines
     assert [line.get_ydata()[-1] for line in lines] == [0.6, 0.75]
     assert all(len(line.get_xdata()) <= CURVE_POINTS + 2 for line in lines)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0013, 0.06), (0.010, 0.011), (1.0, 1.0), (3e-4, 90.0), (0.9, 2.1)])
+@pytest.mark.parametrize("name", ["x", "y"])
+def test_labels_of_logarithmic_axes_stand_apart(name: str, low: float, high: float):
+    """Two at least, in plain numbers, none over another, whatever the times are."""
+    with paper_style():
+        figure = Figure(figsize=(COLUMN_WIDTH, 1.35), layout="constrained")
+        ax = figure.subplots()
+        ax.plot([low, high], [low, high])
+        ax.set(**{f"{name}scale": "log"})
+        axis = ax.xaxis if name == "x" else ax.yaxis
+        label_logarithmic(axis)
+        figure.draw_without_rendering()
+        begin, end = axis.get_view_interval()
+        labels = [label for label in axis.get_ticklabels(which="both") if label.get_text()]
+        inside = [label for label in labels if begin <= label.get_position()["xy".index(name)] <= end]
+        boxes = [label.get_window_extent() for label in inside]
+    assert len(inside) >= 2
+    assert all(re.fullmatch(r"[0-9.]+", label.get_text()) for label in inside)
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
 
 
 def test_inline_figures_share_no_ids(two_methods: Path):
