@@ -23,6 +23,7 @@ from converter.shape import FloatArray
 from evaluate.bench import Contest
 from evaluate.bench_generator import environment_contests
 from evaluate.bench_peers import ShapelyObstacles, ompl_with_sampled_checks
+from evaluate.bench_robotic import is_installed, robotic_rrt
 from evaluate.inputs import read_scene_file
 from evaluate.trial import warm_up
 from pcg import solver
@@ -139,6 +140,10 @@ def motion_contests(name: str, problem: Problem, seeds: int) -> Iterator[Contest
     shortest = "shortest path", query(motion_planner("visibility"))
     for (ours, work), (peer, peer_work) in [(rrt, sampled), (shortest, exact), (exact, sampled)]:
         yield Contest(f"motion, {name}: {ours}", work, seeds, peer, peer_work)
+    if is_installed():
+        # One query more than seeds: the first is to warm up.
+        engine = robotic_rrt(problem.scene, GOALS[name], ITERATIONS, seeds + 1)
+        yield Contest(f"motion, {name}, beside the engine: {rrt[0]}", rrt[1], seeds, "robotic's RRT", engine)
 
 
 def switch_contest(name: str, problem: Problem, seeds: int) -> Contest:

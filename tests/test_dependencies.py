@@ -76,6 +76,7 @@ HOMES = {
         "converter/preview/world.py",
     },
     "rich": {"evaluate/output.py"},
+    "robotic": {"evaluate/bench_robotic.py"},
     "scipy": {"planner/subgoals_bottleneck.py"},
     "shapely": {"evaluate/bench_peers.py", "planner/penetration.py"},
     "stable_baselines3": {"pcg/train.py"},
@@ -90,6 +91,8 @@ CLUSTER = {"distributed"}
 """Of the extra `cluster`."""
 LEARNING = {"onnx", "stable_baselines3", "torch"}
 """Of the extra `rl`."""
+PEERS = {"robotic"}
+"""Compared with where installed, and no dependency."""
 
 DISTRIBUTIONS = {
     "PIL": "pillow",
@@ -138,7 +141,9 @@ def test_every_library_is_declared():
     """What is imported is what is installed, nothing less and nothing more."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     declared = {requirement.split(">=")[0] for requirement in project["dependencies"]}
-    assert declared == {DISTRIBUTIONS.get(name, name) for name in (HOMES.keys() | EVERYWHERE) - LEARNING - CLUSTER}
+    assert declared == {
+        DISTRIBUTIONS.get(name, name) for name in (HOMES.keys() | EVERYWHERE) - LEARNING - CLUSTER - PEERS
+    }
     for extra, libraries_of_it in {"cluster": CLUSTER, "rl": LEARNING}.items():
         optional = {requirement.split(">=")[0] for requirement in project["optional-dependencies"][extra]}
         assert optional >= {DISTRIBUTIONS.get(name, name) for name in libraries_of_it}

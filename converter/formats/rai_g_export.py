@@ -73,6 +73,8 @@ def rai_g_text(scene: Scene) -> str:
     edge = min(CYLINDER_EDGE, agent.radius / 4, agent.height / 4)
     floor_shape = f"shape:box, size:{_list([*size, FLOOR_THICKNESS])}, contact:1"
     agent_shape = f"shape:ssCylinder, size:{_list([agent.height, agent.radius, edge])}, contact:1"
+    # Of the joint, so relative to its origin: both lower limits, then both upper ones.
+    limits = _list((scene.bounds - agent.position).ravel())
     goal_shape = f"shape:box, size:{_list([*scene.goal.size, GOAL_HEIGHT])}, contact:0"
     goal_place = np.array([*(scene.goal.position - centre), 0.0])
     own = f"tolerance:{_number(scene.tolerance)}", f"preset:{scene.preset}" if scene.preset else ""
@@ -81,7 +83,7 @@ def rai_g_text(scene: Scene) -> str:
         "world { X:[0 0 0] }",
         _frame("floor", "world", _pose(origin), floor_shape, "logical:{ table }", *own),
         _frame("egoJoint", "world", _pose(np.array([*agent.position, agent.height / 2]))),
-        _frame("ego", "egoJoint", agent_shape, "joint:transXY", "logical:{ gripper }"),
+        _frame("ego", "egoJoint", agent_shape, f"joint:transXY, limits:{limits}", "logical:{ gripper }"),
         _frame(
             "goal", "floor", _pose(goal_place), goal_shape, "logical:{ table }", f"object:{names[scene.goal.object]}"
         ),
