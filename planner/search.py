@@ -3,14 +3,23 @@
 [L] Levit, Ortiz-Haro, Toussaint: Solving Sequential Manipulation Puzzles by Finding Easier Subproblems. ICRA 2024,
 arXiv 2405.02053.
 
-From the most promising configuration the search first tries to solve the original problem. If that fails, it moves
-each reachable object to a few proposed subgoals; every configuration that this leads to joins the tree, unless enough
-like it are known.
+    L <- {initial configuration}
+    while L is not empty:
+        C <- select_node(L)
+        if solve(C): return the plan
+        for each object o with reachable(C, o):
+            for each z in propose_subgoals(C, o):
+                C' <- sub_solve(C, o, z)
+                if there is a C' and not rej(L, C'): add C' to L
+
+`solve` tries the original problem from C, `sub_solve` brings o to z by one pick-and-place. Among the subgoals is the
+trivial one, z = where o is: the agent takes it from another side. C goes back to the end of L until it has been expanded
+as often as the settings say. Budgets, restarts (`planner.restarts`) and a bound on the plan's length are our additions.
 """
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -30,6 +39,9 @@ from planner.result import PlanResult, Progress
 from planner.settings import Settings
 from planner.subgoals import GENERATORS, GeneratorFactory, propose_subgoals
 from planner.subproblems import subproblem_solvers
+
+TRIVIAL = None
+"""The subgoal of an object that stays where it is."""
 
 
 def solve(
@@ -73,7 +85,7 @@ class Search:
         rng: Source of all randomness.
         should_stop: Asked between subproblems; True ends the search with status `timeout`.
         on_progress: Told after every expansion that did not end the search.
-        max_pick_places: The most pick-places that a plan may have; None for no limit.
+        max_pick_places: The most pick-places that a plan may have.
         max_length: Configurations are left out from which a plan would be longer [m].
         generator: Makes the subgoal generator; None for that of the method.
         heuristic: Scores configurations for filter and selection; None for that of [L].
@@ -91,7 +103,7 @@ class Search:
         rng: np.random.Generator,
         should_stop: Callable[[], bool] = lambda: False,
         on_progress: Callable[[Progress], object] = lambda _: None,
-        max_pick_places: int | None = None,
+        max_pick_places: float = np.inf,
         max_length: float = np.inf,
         *,
         generator: GeneratorFactory | None = None,
@@ -117,7 +129,7 @@ class Search:
         self._should_stop = should_stop
         self._on_progress = on_progress
         self._max_length = max_length
-        self._max_pick_places = np.inf if max_pick_places is None else max_pick_places
+        self._max_pick_places = max_pick_places
 
     def run(self) -> PlanResult:
         """Expands configurations until one solves the problem, none is left or the budget is spent."""
@@ -128,49 +140,46 @@ class Search:
                 return self._result(Status.TIMEOUT)
             node = self._frontier.select_node()
             if problem.at_goal(node.configuration):
-                self.solution = node
-                return self._result(Status.SOLVED, node.steps())
+                return self._solved(node)
             self.counters["expansions"] += 1
             subproblems = self._solver_for(node.configuration)
             if steps := self._solve(node.configuration, subproblems):
-                self.solution = node.followed_by(steps)
-                return self._result(Status.SOLVED, self.solution.steps())
+                return self._solved(node.followed_by(steps))
             for index in range(problem.n_objects):
-                if not subproblems.reachable(index):
-                    continue
-                for step in self._solved_subproblems(subproblems, node, index):
-                    self._add(step.applied_to(node.configuration), node, step)
+                if subproblems.reachable(index):
+                    for subgoal in self._propose_subgoals(subproblems, node, index):
+                        if step := self._sub_solve(subproblems, index, subgoal):
+                            self._add(step.applied_to(node.configuration), node, step)
             self._frontier.add(node)
             self._on_progress(self._progress())
         # Where the last expansion was cut short, something may have been left.
         return self._result(Status.TIMEOUT if self._out_of_budget() else Status.EXHAUSTED)
 
-    def _solved_subproblems(self, subproblems: PickPlaceSolver, node: Node, index: int) -> list[PickPlace]:
-        """`sub_solve` for each of `propose_subgoals`, the trivial one last."""
-        steps = []
-        for subgoal in self._subgoals(subproblems, node, index):
-            if self._out_of_budget():
-                break
-            steps.append(subproblems.pick_place(index, Region.around(subgoal, self.settings.subgoal_size)))
-        steps.append(subproblems.regrasp(index))
-        return [step for step in steps if step is not None]
-
-    def _subgoals(self, subproblems: PickPlaceSolver, node: Node, index: int) -> FloatArray:
+    def _propose_subgoals(self, subproblems: PickPlaceSolver, node: Node, index: int) -> list[FloatArray | None]:
+        """Where object `index` is to go next, (2,) [m] each, and at last nowhere: the trivial subgoal."""
         if node.pick_places + 2 > self._max_pick_places:
             # After one more, the goal-object would still have to be brought to the goal.
-            return np.empty((0, 2))
-        placeable = partial(subproblems.placeable, index)
-        return propose_subgoals(
+            return [TRIVIAL]
+        proposal = propose_subgoals(
             self.problem,
             self._generator,
             node.configuration,
             index,
-            placeable,
+            partial(subproblems.placeable, index),
             self.settings,
             self.rng,
             self._scores_of,
             partial(subproblems.contacts, index) if self._in_contact else None,
-        ).subgoals
+        )
+        return [*proposal.subgoals, TRIVIAL]
+
+    def _sub_solve(self, subproblems: PickPlaceSolver, index: int, subgoal: FloatArray | None) -> PickPlace | None:
+        """Brings object `index` near `subgoal` (2,) [m], or grasps it anew; None if no way was found."""
+        if subgoal is TRIVIAL:
+            return subproblems.regrasp(index)
+        if self._out_of_budget():
+            return None
+        return subproblems.pick_place(index, Region.around(subgoal, self.settings.subgoal_size))
 
     def _add(self, configuration: Configuration, parent: Node | None = None, step: PickPlace | None = None) -> None:
         """Enters a configuration into the tree unless `rej` refuses it."""
@@ -192,8 +201,11 @@ class Search:
     def _out_of_budget(self) -> bool:
         return self._should_stop() or time.perf_counter() - self._started > self.settings.time_limit
 
-    def _result(self, status: Status, steps: list[PickPlace] | None = None) -> PlanResult:
-        steps = steps or []
+    def _solved(self, solution: Node) -> PlanResult:
+        self.solution = solution
+        return self._result(Status.SOLVED, solution.steps())
+
+    def _result(self, status: Status, steps: Sequence[PickPlace] = ()) -> PlanResult:
         self.counters["nodes"] = len(self.nodes)
         return PlanResult(
             status=status,
