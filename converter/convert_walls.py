@@ -15,7 +15,8 @@ from converter.merge_walls import Rectangle, merged
 from converter.preset import BLOCK_PREFIX, OUTER_WALL_SIDES, Preset
 from converter.scene import OUTER_WALL_PREFIX, Body
 from converter.shape import FloatArray, Part, denoised
-from pcg.grid import BoolArray, Cell
+from pcg.arrays import BoolArray
+from pcg.grid import Cell
 
 FLOOR_MARGIN = 0.05
 """How far the floor and the outer walls reach beyond the border of the grid [m]."""

@@ -20,10 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from converter.raster import Image
+from pcg.arrays import BoolArray
 from pcg.errors import InputError
 
 Plane = npt.NDArray[np.uint8]
-BoolArray = npt.NDArray[np.bool_]
 
 MACROBLOCK = 16
 

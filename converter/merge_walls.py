@@ -20,7 +20,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from pcg.grid import BoolArray, Cell
+from pcg.arrays import BoolArray
+from pcg.grid import Cell
 
 Point = tuple[int, int]
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from evaluate.plot_style import TEXT_WIDTH, paper_style
-from pcg.diversity import FloatArray
+from pcg.arrays import FloatArray
 from pcg.level_set import ManifestEntry
 
 PANEL_HEIGHT = 1.9

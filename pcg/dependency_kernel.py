@@ -6,7 +6,8 @@ Boards are flat with a border of wall, see `pcg.solver_kernel`.
 import numpy as np
 from numba import njit
 
-from pcg.solver_kernel import SOLVED, ByteArray, Int16Array, Int32Array, fewest_pushes, make_board, start_of
+from pcg.arrays import ByteArray, Int16Array, Int32Array
+from pcg.solver_kernel import SOLVED, fewest_pushes, make_board, start_of
 
 
 @njit(cache=True)

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from pcg.arrays import FloatArray
+from pcg.grid import Cell
 from pcg.level import Level
 from pcg.solver import goal_crate_of, solve
-
-FloatArray = npt.NDArray[np.float64]
+from pcg.symmetry import images
 
 SYMMETRIES = 8
 
@@ -58,9 +58,9 @@ class Descriptors:
     @classmethod
     def of(cls, levels: Sequence[Level]) -> "Descriptors":
         """Of levels that are square, of one shape, and playable."""
-        walls = np.stack([_images(level.is_wall.astype(np.float64)) for level in levels], axis=1)
+        walls = np.stack([images(level.is_wall.astype(np.float64)) for level in levels], axis=1)
         marks = [_marked(level, cell) for level in levels for cell in _places(level)]
-        places = np.stack([np.argwhere(_images(mark))[:, 1:] for mark in marks], axis=1).astype(np.float64)
+        places = np.stack([np.argwhere(images(mark))[:, 1:] for mark in marks], axis=1).astype(np.float64)
         n, side = len(levels), levels[0].shape[0]
         return cls(walls.reshape(SYMMETRIES, n, -1), places.reshape(SYMMETRIES, n, 3, 2), 2.0 * (side - 1))
 
@@ -79,18 +79,13 @@ class Descriptors:
         return np.asarray((jaccard + moved).min(axis=0) / 2.0, dtype=np.float64)
 
 
-def _places(level: Level) -> list[tuple[int, int]]:
+def _places(level: Level) -> list[Cell]:
     goal = level.goal_crate
     goal = goal_crate_of(level, solve(level)) if goal is None else goal
     return [level.player, goal, level.targets[0]]
 
 
-def _marked(level: Level, cell: tuple[int, int]) -> FloatArray:
+def _marked(level: Level, cell: Cell) -> FloatArray:
     mark = np.zeros(level.shape)
     mark[cell] = 1.0
     return mark
-
-
-def _images(array: FloatArray) -> FloatArray:
-    """(8, rows, columns): the eight symmetries of a square array, itself first."""
-    return np.stack([np.rot90(image, turns) for image in (array, np.fliplr(array)) for turns in range(4)])

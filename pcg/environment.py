@@ -16,7 +16,7 @@ An observation is a dictionary:
 - `position`: (2,) row and column of the agent, not in `wide`;
 - `scalars`: what `observation.scalars` says about the map, the budgets and the request.
 
-The actions are those of `pcg.representation`. An episode terminates when everything that was asked for is met; it is
+The information of a step is that of `information`. The actions are those of `pcg.representation`. An episode terminates when everything that was asked for is met; it is
 truncated when a budget is spent.
 """
 
@@ -28,6 +28,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
+from pcg.arrays import IntArray
 from pcg.episodes import Beginning, Episodes, EpisodeSettings
 from pcg.level import Level, TileArray
 from pcg.observation import observation_parts
@@ -42,8 +43,11 @@ from pcg.xsb import format_level
 
 Observation = dict[str, npt.NDArray[Any]]
 
-_COUNTED = tuple(column.name.lower() for column in Column)
-"""What a step's information says about the map."""
+
+def information(episodes: Episodes) -> dict[str, IntArray]:
+    """(n,) numbers by name: what is known about the maps, the columns of `Column`, and `steps` and `changes` done."""
+    counted = {column.name.lower(): episodes.statistics[:, column].astype(np.int64) for column in Column}
+    return {**counted, "steps": episodes.steps.copy(), "changes": episodes.changes.copy()}
 
 
 def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # before 1.4 no generic class at run time
@@ -55,7 +59,7 @@ def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # befor
         "goal": spaces.Box(0, 1, shape, np.uint8),
         "scalars": spaces.Box(-SCALAR_LIMIT, SCALAR_LIMIT, (SCALARS,), np.float32),
     }
-    if REPRESENTATIONS[settings.representation](shape, 1).has_position:
+    if settings.has_position:
         last = np.array(shape, dtype=np.int64) - 1
         parts["position"] = spaces.Box(np.zeros_like(last), last, dtype=np.int64)
     return spaces.Dict(parts)
@@ -63,7 +67,7 @@ def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # befor
 
 def action_space(settings: EpisodeSettings) -> spaces.Discrete:
     """The space of one action."""
-    return spaces.Discrete(REPRESENTATIONS[settings.representation]((settings.rows, settings.columns), 1).n_actions)
+    return spaces.Discrete(settings.n_actions)
 
 
 def beginning(
@@ -188,9 +192,7 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
         return {name: part[0] for name, part in observation_parts(self.episodes).items()}
 
     def _info(self) -> dict[str, Any]:
-        episodes = self.episodes
-        counted = zip(_COUNTED, episodes.statistics[0].tolist(), strict=True)
-        return {**dict(counted), "steps": int(episodes.steps[0]), "changes": int(episodes.changes[0])}
+        return {name: int(numbers[0]) for name, numbers in information(self.episodes).items()}
 
 
 for _name in REPRESENTATIONS:

@@ -3,12 +3,11 @@
 import numpy as np
 from numba import njit
 
-from pcg.grid import BoolArray
+from pcg.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from pcg.level import TileArray
 from pcg.representation import KEEP
-from pcg.reward import FloatArray, Wanted, distances
-from pcg.solver_kernel import Int32Array
-from pcg.statistics_kernel import IntArray, Judge, edit
+from pcg.reward import Wanted, distances
+from pcg.statistics_kernel import Judge, edit
 
 
 @njit(cache=True)

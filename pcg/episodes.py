@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pcg.arrays import BoolArray, FloatArray, IntArray
 from pcg.episode_kernel import advance
-from pcg.grid import BoolArray
 from pcg.level import TileArray
-from pcg.representation import REPRESENTATIONS, IntArray, Representation
-from pcg.reward import Control, FloatArray, RewardSettings, distances, reward
+from pcg.representation import REPRESENTATIONS, Representation
+from pcg.reward import Control, RewardSettings, distances, reward
 from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, make_judge, measure
 
 
@@ -56,6 +56,16 @@ class EpisodeSettings:
     def cells(self) -> int:
         """Number of tiles."""
         return self.rows * self.columns
+
+    @property
+    def has_position(self) -> bool:
+        """Whether the agent edits the map around one cell."""
+        return REPRESENTATIONS[self.representation].has_position
+
+    @property
+    def n_actions(self) -> int:
+        """Actions are 0 to n_actions - 1."""
+        return REPRESENTATIONS[self.representation]((self.rows, self.columns), 1).n_actions
 
     @property
     def max_changes(self) -> int:
@@ -128,6 +138,7 @@ class Episodes:
         budgets: Changes and steps of an episode.
         coordinates: (cells, 2) row and column of each cell.
         judge: Solves maps, with a cache of its verdicts.
+        representation: How maps are edited.
     """
 
     def __init__(self, settings: EpisodeSettings, n: int, archive: TileArray | None = None) -> None:
@@ -146,17 +157,7 @@ class Episodes:
         max_crates = settings.reward.crates + settings.spare_crates
         self._wanted = settings.reward.wanted()
         self.judge = make_judge(archive, max_crates, settings.max_states)
-        self._representation: Representation = REPRESENTATIONS[settings.representation](shape, n)
-
-    @property
-    def n(self) -> int:
-        """Number of episodes."""
-        return len(self.maps)
-
-    @property
-    def representation(self) -> Representation:
-        """How maps are edited."""
-        return self._representation
+        self.representation: Representation = REPRESENTATIONS[settings.representation](shape, n)
 
     def begin(self, rng: np.random.Generator, episodes: IntArray, beginning: Beginning) -> None:
         """Starts the episodes with these numbers anew."""
@@ -165,7 +166,7 @@ class Episodes:
         self.controls[episodes] = beginning.controls
         self.steps[episodes] = 0
         self.changes[episodes] = 0
-        self._representation.begin(rng, episodes)
+        self.representation.begin(rng, episodes)
         measure(self.maps, episodes, self.statistics, self.judge)
         distances(self.statistics, self.controls, episodes, self._wanted, self.distance)
 
@@ -181,7 +182,7 @@ class Episodes:
         Raises:
             ValueError: an action is none of the representation's.
         """
-        n_actions = self._representation.n_actions
+        n_actions = self.representation.n_actions
         # Compiled code does not look where it writes.
         if actions.min() < 0 or actions.max() >= n_actions:
             raise ValueError(f"actions must be 0 to {n_actions - 1}, found {actions.min()} to {actions.max()}")
@@ -189,7 +190,7 @@ class Episodes:
         changed = advance(
             self.maps,
             self.frozen,
-            *self._representation.step(actions),
+            *self.representation.step(actions),
             self.statistics,
             self.controls,
             self.distance,

@@ -11,9 +11,9 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper, numpy_helper
 
+from pcg.arrays import Float32Array
 from pcg.episodes import EpisodeSettings
 from pcg.files import replacing
-from pcg.observation import Float32Array
 from pcg.policy import METADATA_KEY, PolicyMetadata
 
 OPSET = 17

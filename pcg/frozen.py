@@ -18,9 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
+from pcg.arrays import BoolArray
 from pcg.errors import InputError
 from pcg.files import read_text
-from pcg.grid import BoolArray, Cell
+from pcg.grid import Cell
 from pcg.level import Level, Tile, TileArray
 from pcg.xsb import MAX_SIDE, TILE_OF_CHARACTER
 

@@ -7,10 +7,10 @@ from collections import deque
 from collections.abc import Iterable
 
 import numpy as np
-import numpy.typing as npt
+
+from pcg.arrays import BoolArray
 
 Cell = tuple[int, int]
-BoolArray = npt.NDArray[np.bool_]
 
 DIRECTIONS: dict[str, Cell] = {"l": (0, -1), "u": (-1, 0), "r": (0, 1), "d": (1, 0)}
 """Row and column steps by their letter in LURD notation."""
@@ -48,7 +48,7 @@ def shortest_walk(passable: BoolArray, start: Cell, end: Cell) -> str | None:
     The same arguments always give the same of several shortest walks.
     """
     width = passable.shape[1] + 2
-    unvisited = _padded(passable)
+    free = _padded(passable)
     first, last = ((row + 1) * width + column + 1 for row, column in (start, end))
     steps = {letter: row * width + column for letter, (row, column) in DIRECTIONS.items()}
     arrived: dict[int, str] = {first: ""}
@@ -56,7 +56,7 @@ def shortest_walk(passable: BoolArray, start: Cell, end: Cell) -> str | None:
     while queue and last not in arrived:
         cell = queue.popleft()
         for letter, step in steps.items():
-            if unvisited[cell + step] and cell + step not in arrived:
+            if free[cell + step] and cell + step not in arrived:
                 arrived[cell + step] = letter
                 queue.append(cell + step)
     if last not in arrived:

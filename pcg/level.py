@@ -12,8 +12,9 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
+from pcg.arrays import BoolArray
 from pcg.errors import InputError
-from pcg.grid import BoolArray, Cell, cells_of
+from pcg.grid import Cell, cells_of
 
 TileArray = npt.NDArray[np.uint8]
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from pcg.grid import BoolArray, Cell, count_regions
+from pcg.arrays import BoolArray
+from pcg.grid import Cell, count_regions
 from pcg.level import Level
 
 
@@ -76,7 +76,7 @@ def _meets(start: Cell, end: Cell, mask: BoolArray, half_width: int) -> bool:
     """
     p, q = 4 * np.array(start, dtype=np.int64), 4 * np.array(end, dtype=np.int64)
     centres = 4 * np.argwhere(mask).astype(np.int64)
-    apart: npt.NDArray[np.bool_] = np.zeros(len(centres), dtype=np.bool_)
+    apart: BoolArray = np.zeros(len(centres), dtype=np.bool_)
     for axis in (0, 1):
         low, high = min(p[axis], q[axis]), max(p[axis], q[axis])
         apart |= (centres[:, axis] - half_width >= high) | (centres[:, axis] + half_width <= low)

@@ -11,14 +11,12 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from pcg.arrays import BoolArray, Float32Array, IntArray
 from pcg.episodes import Episodes, EpisodeSettings
-from pcg.grid import BoolArray
 from pcg.level import TileArray
-from pcg.representation import N_TILES, IntArray
+from pcg.representation import N_TILES
 from pcg.scalar_kernel import SCALARS, write_scalars
 from pcg.statistics_kernel import Column
-
-Float32Array = npt.NDArray[np.float32]
 
 WINDOW = 5
 """Side of the window around the position."""
@@ -27,7 +25,7 @@ WINDOW = 5
 def observation_size(settings: EpisodeSettings) -> int:
     """Numbers in an observation."""
     size = settings.cells * (N_TILES + 2) + SCALARS
-    if settings.representation != "wide":
+    if settings.has_position:
         size += settings.cells + WINDOW * WINDOW * (N_TILES + 2)
     return size
 
@@ -93,9 +91,7 @@ def observations(episodes: Episodes) -> Float32Array:
     return flat_observations(observation_parts(episodes), episodes.settings)
 
 
-def _windows(
-    maps: TileArray, frozen: TileArray, rows: npt.NDArray[np.int64], columns: npt.NDArray[np.int64]
-) -> BoolArray:
+def _windows(maps: TileArray, frozen: TileArray, rows: IntArray, columns: IntArray) -> BoolArray:
     """(n, WINDOW * WINDOW * 7) tiles and frozen cells around the positions."""
     n, margin = len(maps), WINDOW // 2
     border = ((0, 0), (margin, margin), (margin, margin))

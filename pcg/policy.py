@@ -17,12 +17,12 @@ import onnxruntime
 from pydantic import Field
 
 from pcg import json_text
+from pcg.arrays import Float32Array, IntArray
 from pcg.episodes import Episodes, EpisodeSettings
 from pcg.errors import InputError
 from pcg.files import read_bytes
 from pcg.level import Level
-from pcg.observation import Float32Array, observation_size, observations
-from pcg.representation import IntArray
+from pcg.observation import observation_size, observations
 from pcg.request import Rejection, Request
 from pcg.reward import RewardSettings
 from pcg.statistics_kernel import Column
@@ -143,8 +143,7 @@ def load_policy(path: Path) -> Policy:
 
 def _require_shapes(session: onnxruntime.InferenceSession, settings: EpisodeSettings, path: Path) -> None:
     found = [node.shape[1:] for node in (*session.get_inputs(), *session.get_outputs())]
-    n_actions = Episodes(settings, 1).representation.n_actions
-    expected = [[observation_size(settings)], [n_actions]]
+    expected = [[observation_size(settings)], [settings.n_actions]]
     if found != expected:
         raise InputError(str(path), f"inputs and outputs have shapes {found}, its metadata ask for {expected}")
 

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pcg.agents import Agent, policy_path
+from pcg.arrays import Float32Array, IntArray
 from pcg.examine import examined
-from pcg.level import Level
-from pcg.observation import Float32Array
 from pcg.policy import Policy, load_policy, policy_levels
-from pcg.representation import IntArray
 from pcg.request import Proposal, Rejection, Request
-from pcg.solver import Solution
 
 
 @dataclass(frozen=True)
@@ -31,8 +28,8 @@ class PolicySource:
         return self.policy.representation
 
     @property
-    def weights_hash(self) -> str | None:
-        """Of the policy's file."""
+    def weights_hash(self) -> str:
+        """SHA-256 of the policy's file."""
         return self.policy.weights_hash
 
     def proposals(self, request: Request, seed: int) -> Iterator[Proposal]:
@@ -43,7 +40,7 @@ class PolicySource:
         """
         targets = _targets(request)
         for attempt in policy_levels(self.policy, request, np.random.default_rng(np.random.SeedSequence(seed))):
-            outcome = attempt.rejection if attempt.level is None else _tested(attempt.level, request)
+            outcome = attempt.rejection if attempt.level is None else examined(attempt.level, request)
             if isinstance(outcome, tuple):
                 yield Proposal(*outcome, 1, {}, attempt.steps, targets)
             else:
@@ -77,10 +74,6 @@ def source_of(agent: Agent) -> PolicySource:
         InputError: its policy is missing or cannot be read.
     """
     return PolicySource(load_policy(policy_path(agent.representation)))
-
-
-def _tested(level: Level, request: Request) -> tuple[Level, Solution] | Rejection:
-    return examined(level, request)
 
 
 def _targets(request: Request) -> dict[str, float]:

@@ -5,14 +5,14 @@ Tiles are flat: cell (row, column) is `row * columns + column`. The boards of th
 """
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from pcg.arrays import ByteArray, Int16Array, Int32Array, IntArray
 from pcg.dependency_kernel import depends
 from pcg.frozen import OPEN
 from pcg.level import Tile, TileArray
 from pcg.region_kernel import count_regions, fill, make_scratch, parts_around
-from pcg.solver_kernel import LIMIT, SOLVED, Int16Array, Int32Array, fewest_pushes, make_board
+from pcg.solver_kernel import LIMIT, SOLVED, fewest_pushes, make_board
 
 FLOOR, WALL, PLAYER, CRATE, TARGET, CRATE_ON_TARGET, PLAYER_ON_TARGET = (int(tile) for tile in Tile)
 _OPEN = OPEN
@@ -28,14 +28,14 @@ def draw_until(
     rng: np.random.Generator,
     frozen: TileArray,
     walls: int,
-    things: npt.NDArray[np.uint8],
+    things: ByteArray,
     low: int,
     high: int,
     dependency: int,
     max_states: int,
     attempts: int,
     tiles: TileArray,
-    counts: npt.NDArray[np.int64],
+    counts: IntArray,
 ) -> bool:
     """Draws levels into `tiles` until one is solved by a number of pushes from `low` to `high`; see `draw_level`.
 
@@ -101,9 +101,7 @@ def _board(tiles: TileArray) -> tuple[TileArray, int, Int16Array, Int32Array]:
 
 
 @njit(cache=True)
-def draw_level(
-    rng: np.random.Generator, frozen: TileArray, walls: int, things: npt.NDArray[np.uint8], tiles: TileArray
-) -> bool:
+def draw_level(rng: np.random.Generator, frozen: TileArray, walls: int, things: ByteArray, tiles: TileArray) -> bool:
     """Draws a level into `tiles`.
 
     Walls are added to open cells in random order, leaving out each that would divide the free cells, until their number

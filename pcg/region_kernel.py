@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from pcg.arrays import ByteArray, Int32Array
 from pcg.level import Tile, TileArray
-from pcg.solver_kernel import ByteArray, Int32Array
 
 WALL = int(Tile.WALL)
 

@@ -9,15 +9,12 @@ Cells are numbered `row * columns + column`, tiles as in `Tile`, the first five 
 once.
 """
 
-from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from pcg.arrays import IntArray
 from pcg.grid import DIRECTIONS, Cell
-
-IntArray = npt.NDArray[np.int64]
 
 N_TILES = 5
 """Tiles that an agent can write: floor, wall, player, crate, target."""
@@ -141,5 +138,5 @@ class Wide:
         return actions // N_TILES, actions % N_TILES
 
 
-REPRESENTATIONS: dict[str, Callable[[Cell, int], Representation]] = {"narrow": Narrow, "turtle": Turtle, "wide": Wide}
-"""By name; called with a shape and the number of episodes."""
+REPRESENTATIONS: dict[str, type[Narrow | Turtle | Wide]] = {"narrow": Narrow, "turtle": Turtle, "wide": Wide}
+"""By name; made of a shape and the number of episodes."""

@@ -10,7 +10,7 @@ from pcg.level import Level
 from pcg.solver import Solution
 
 MAX_PUSHES = 10_000
-"""Largest number of pushes; stands for a push band without an upper end."""
+"""Largest number of pushes; stands for the upper end of a push band that has none."""
 
 
 @dataclass(frozen=True)

@@ -12,14 +12,10 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
-from pcg.solver_kernel import Int32Array
+from pcg.arrays import FloatArray, Int32Array, IntArray
 from pcg.statistics_kernel import Column
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 
 class Control(IntEnum):

@@ -6,9 +6,9 @@ Counts and distances are scaled so that most of them are within -2 to 2, and all
 import numpy as np
 from numba import njit
 
-from pcg.reward import Control, FloatArray, outside
-from pcg.solver_kernel import Int32Array
-from pcg.statistics_kernel import Column, Float32Array, IntArray
+from pcg.arrays import Float32Array, FloatArray, Int32Array, IntArray
+from pcg.reward import Control, outside
+from pcg.statistics_kernel import Column
 
 SCALARS = 24
 """Scalars of an observation."""

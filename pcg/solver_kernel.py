@@ -26,10 +26,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-Int16Array = npt.NDArray[np.int16]
-Int32Array = npt.NDArray[np.int32]
-ByteArray = npt.NDArray[np.uint8]
-WordArray = npt.NDArray[np.uint64]
+from pcg.arrays import ByteArray, Int16Array, Int32Array, WordArray
 
 SOLVED, UNSOLVABLE, LIMIT = 0, 1, 2
 

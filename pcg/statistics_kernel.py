@@ -13,16 +13,13 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from pcg.arrays import ByteArray, Int32Array, IntArray, WordArray
 from pcg.dependency_kernel import depends
 from pcg.level import Tile, TileArray
 from pcg.region_kernel import Scratch, count_regions, fill, make_scratch, parts_around, visit
-from pcg.solver_kernel import SOLVED, ByteArray, Int32Array, WordArray, fewest_pushes, make_board, start_of
-
-IntArray = npt.NDArray[np.int64]
-Float32Array = npt.NDArray[np.float32]
+from pcg.solver_kernel import SOLVED, fewest_pushes, make_board, start_of
 
 FLOOR, WALL, PLAYER, CRATE, TARGET = (int(tile) for tile in list(Tile)[:5])
 

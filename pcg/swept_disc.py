@@ -5,9 +5,9 @@ along it. A level with a free ray and a blocked disc shows the crate through a g
 """
 
 import numpy as np
-import numpy.typing as npt
 
-from pcg.grid import BoolArray, Cell
+from pcg.arrays import BoolArray, IntArray
+from pcg.grid import Cell
 from pcg.level import Level
 from pcg.metrics import occluded
 
@@ -50,7 +50,7 @@ def _is_close(start: Cell, end: Cell, mask: BoolArray, half_width: int, radius: 
     The shortest way between the two begins at a corner of the square or at an end of the segment.
     """
     p, q = UNIT * np.array(start, dtype=np.int64), UNIT * np.array(end, dtype=np.int64)
-    centres: npt.NDArray[np.int64] = UNIT * np.argwhere(mask).astype(np.int64)
+    centres: IntArray = UNIT * np.argwhere(mask).astype(np.int64)
     along = q - p
     squared_length = along @ along
     offsets = (centres[:, np.newaxis] + half_width * _CORNERS).reshape(-1, 2) - p

@@ -23,7 +23,7 @@ def symmetries(level: Level) -> tuple[Level, ...]:
         marked[level.goal_crate] = True
     return tuple(
         replace(level, tiles=tiles, goal_crate=next(iter(cells_of(mark)), None))
-        for tiles, mark in zip(_images(level.tiles), _images(marked), strict=True)
+        for tiles, mark in zip(images(level.tiles), images(marked), strict=True)
     )
 
 
@@ -37,7 +37,7 @@ def content_hash(level: Level) -> str:
 
     Names and goal crates do not count: a level has one hash, whichever crate a scene made of it moves.
     """
-    return _digest(min(_images(level.tiles), key=_key))
+    return _digest(min(images(level.tiles), key=_key))
 
 
 def tiles_hash(level: Level) -> str:
@@ -45,7 +45,8 @@ def tiles_hash(level: Level) -> str:
     return _digest(level.tiles)
 
 
-def _images(array: npt.NDArray[Scalar]) -> list[npt.NDArray[Scalar]]:
+def images(array: npt.NDArray[Scalar]) -> list[npt.NDArray[Scalar]]:
+    """The eight symmetries of a (rows, columns) array, in the order of `symmetries`."""
     return [np.rot90(image, turns) for image in (array, np.fliplr(array)) for turns in range(4)]
 
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from pcg.arrays import FloatArray
 from pcg.episodes import Beginning, EpisodeSettings, random_maps
 from pcg.errors import InputError
 from pcg.frozen import FrozenTiles
 from pcg.representation import N_TILES
 from pcg.request import Request
-from pcg.reward import Control, FloatArray
+from pcg.reward import Control
 
 _SIGN = {None: 0, False: -1, True: 1}
 

@@ -4,13 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pcg.arrays import FloatArray
 from pcg.episodes import Beginning, EpisodeSettings, random_maps
 from pcg.level import TileArray
-from pcg.reward import Control, FloatArray
+from pcg.request import MAX_PUSHES
+from pcg.reward import Control
 from pcg.statistics_kernel import FLOOR, WALL
-
-NO_LIMIT = 10_000.0
-"""Upper end of an open band of pushes."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class TaskDistribution:
         fewest = rng.integers(*self.pushes, n, endpoint=True)
         most = fewest + rng.integers(*self.push_width, n, endpoint=True)
         controls[:, Control.PUSHES_LOW] = fewest
-        controls[:, Control.PUSHES_HIGH] = np.where(rng.random(n) < self.open_share, NO_LIMIT, most)
+        controls[:, Control.PUSHES_HIGH] = np.where(rng.random(n) < self.open_share, MAX_PUSHES, most)
         sight = rng.random(n)
         hidden, seen = sight < self.occluded_share, sight > 1 - self.occluded_share
         controls[:, Control.OCCLUDED] = hidden.astype(int) - seen.astype(int)

@@ -22,7 +22,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import torch
 from gymnasium import spaces
 from stable_baselines3 import PPO
@@ -31,21 +30,17 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from stable_baselines3.common.vec_env import VecEnv
 from torch import nn
 
+from pcg.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from pcg.episodes import Episodes, EpisodeSettings
 from pcg.errors import InputError
 from pcg.export_policy import Layer, write_policy
 from pcg.files import read_text, replacing, write_text
 from pcg.learning_curve import CurveRow, draw_curves, read_curve
 from pcg.observation import observation_size, observations
-from pcg.reward import FloatArray
 from pcg.statistics_kernel import Column
 from pcg.task_distribution import TaskDistribution
 
 RUN_FILE, CURVE_FILE, CHECKPOINT_FILE, PICTURE_FILE = "run.json", "curve.jsonl", "checkpoint.pt", "curve.png"
-
-Float32Array = npt.NDArray[np.float32]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -126,7 +121,7 @@ class EpisodesVecEnv(VecEnv):  # type: ignore[misc]  # torch and its friends are
         self._infos: list[dict[str, Any]] = [{} for _ in range(settings.n_envs)]
         self._actions = np.zeros(settings.n_envs, dtype=np.int64)
         observation_space = spaces.Box(-np.inf, np.inf, (observation_size(settings.episode),), np.float32)
-        action_space = spaces.Discrete(self.episodes.representation.n_actions)
+        action_space = spaces.Discrete(settings.episode.n_actions)
         self.render_mode = None
         super().__init__(settings.n_envs, observation_space, action_space)
 

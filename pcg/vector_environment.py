@@ -1,8 +1,9 @@
 """Many Sokoban environments as one: statistics in one compiled call, one cache of verdicts.
 
-`gymnasium.make_vec("Sokoban-narrow-v0", num_envs=256)` makes it, with the arguments of `SokobanEnvironment`. An episode
-that ended begins anew in the same step; the step's information then holds the numbers of such environments, `ended`, and
-their last observations, `final_obs`, in the same order.
+`gymnasium.make_vec("Sokoban-narrow-v0", num_envs=256)` makes it, with the arguments of `SokobanEnvironment`. The information
+of a step says what that of a single environment says, as one array for all. An episode that ended begins anew in the same
+step; as in Gymnasium's own vector environments the information then also holds, for each environment that `_final_obs`
+marks, its last observation, `final_obs`, and, marked by `_final_info`, what was said about it, `final_info`.
 """
 
 from typing import Any
@@ -12,14 +13,13 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from pcg.environment import Observation, action_space, beginning, observation_space
+from pcg.arrays import BoolArray, FloatArray, IntArray
+from pcg.environment import Observation, action_space, beginning, information, observation_space
 from pcg.episodes import Episodes, EpisodeSettings
-from pcg.grid import BoolArray
 from pcg.level import TileArray
 from pcg.observation import observation_parts
-from pcg.representation import IntArray
 from pcg.request import Request
-from pcg.reward import FloatArray, RewardSettings
+from pcg.reward import RewardSettings
 from pcg.task_distribution import TaskDistribution
 
 
@@ -73,17 +73,32 @@ class SokobanVectorEnvironment(VectorEnv[Observation, IntArray, npt.NDArray[Any]
         super().reset(seed=seed)
         self._options = options or {}
         self._begin(np.arange(self.num_envs))
-        return observation_parts(self.episodes), {}
+        return observation_parts(self.episodes), information(self.episodes)
 
     def step(self, actions: IntArray) -> tuple[Observation, FloatArray, BoolArray, BoolArray, dict[str, Any]]:
         """Carries out one action in each environment."""
         done = self.episodes.step(np.asarray(actions, dtype=np.int64))
-        information: dict[str, Any] = {}
-        ended = np.flatnonzero(done.terminated | done.truncated)
-        if len(ended):
-            information = {"ended": ended, "final_obs": observation_parts(self.episodes, ended)}
-            self._begin(ended)
-        return observation_parts(self.episodes), done.reward, done.terminated, done.truncated, information
+        final: dict[str, Any] = {}
+        has_ended = done.terminated | done.truncated
+        if has_ended.any():
+            final = self._final(has_ended)
+            self._begin(np.flatnonzero(has_ended))
+        said = {**information(self.episodes), **final}
+        return observation_parts(self.episodes), done.reward, done.terminated, done.truncated, said
+
+    def _final(self, has_ended: BoolArray) -> dict[str, Any]:
+        """What is said about episodes that ended, before they begin anew."""
+        observations = np.full(self.num_envs, None, dtype=object)
+        numbers = np.flatnonzero(has_ended)
+        parts = observation_parts(self.episodes, numbers)
+        for k, number in enumerate(numbers):
+            observations[number] = {name: part[k] for name, part in parts.items()}
+        return {
+            "final_obs": observations,
+            "_final_obs": has_ended,
+            "final_info": information(self.episodes),
+            "_final_info": has_ended,
+        }
 
     def _begin(self, numbers: IntArray) -> None:
         request, start = self._options.get("request", self._request), self._options.get("start")

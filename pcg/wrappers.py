@@ -10,9 +10,10 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import RecordConstructorArgs
 
+from pcg.arrays import Float32Array
 from pcg.environment import Observation, SokobanEnvironment
 from pcg.episodes import EpisodeSettings
-from pcg.observation import Float32Array, flat_observations, observation_size
+from pcg.observation import flat_observations, observation_size
 from pcg.representation import N_TILES
 from pcg.scalar_kernel import SCALAR_LIMIT
 

@@ -14,7 +14,8 @@ from converter.formats.body_document import MAX_PARTS
 from converter.merge_walls import Rectangle, merged
 from converter.preset import BLOCK_PREFIX
 from converter.scene import Body, Scene
-from pcg.grid import BoolArray, Cell, cells_of
+from pcg.arrays import BoolArray
+from pcg.grid import Cell, cells_of
 from pcg.level import Level
 
 SIDES = st.integers(1, 5)

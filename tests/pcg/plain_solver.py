@@ -10,7 +10,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from pcg.grid import BoolArray, Cell
+from pcg.arrays import BoolArray
+from pcg.grid import Cell
 from pcg.level import Level
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 
+from pcg.arrays import BoolArray
 from pcg.episode_kernel import advance
-from pcg.grid import BoolArray
 from pcg.representation import KEEP
 from pcg.reward import Control, RewardSettings, distances
 from pcg.statistics_kernel import FLOOR, WALL, Column, make_judge, measure

@@ -3,7 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from pcg.grid import DIRECTIONS, BoolArray, Cell, cells_of, count_regions, reachable, shortest_walk
+from pcg.arrays import BoolArray
+from pcg.grid import DIRECTIONS, Cell, cells_of, count_regions, reachable, shortest_walk
 
 MASKS = hnp.arrays(np.bool_, hnp.array_shapes(min_dims=2, max_dims=2, max_side=6))
 

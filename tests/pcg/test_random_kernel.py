@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from pcg.arrays import BoolArray
 from pcg.frozen import OPEN, FrozenTiles
-from pcg.grid import BoolArray, Cell, cells_of, reachable
+from pcg.grid import Cell, cells_of, reachable
 from pcg.level import Level, Tile
 from pcg.metrics import statistics
 from pcg.random_kernel import draw_level

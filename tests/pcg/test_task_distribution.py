@@ -2,8 +2,9 @@ import numpy as np
 
 from pcg.episodes import EpisodeSettings
 from pcg.level import Tile
+from pcg.request import MAX_PUSHES
 from pcg.reward import Control
-from pcg.task_distribution import NO_LIMIT, TaskDistribution
+from pcg.task_distribution import TaskDistribution
 
 
 def test_controls_are_drawn_from_the_ranges():
@@ -17,7 +18,7 @@ def test_controls_are_drawn_from_the_ranges():
         (0.2, drawn[:, Control.OCCLUDED] == 1),
         (0.2, drawn[:, Control.OCCLUDED] == -1),
         (0.1, drawn[:, Control.DEPENDENCY] == 1),
-        (0.5, drawn[:, Control.PUSHES_HIGH] == NO_LIMIT),
+        (0.5, drawn[:, Control.PUSHES_HIGH] == MAX_PUSHES),
     ):
         assert abs(found.mean() - share) < 0.03
 

@@ -17,15 +17,39 @@ def test_a_batch_of_one_is_the_single_environment(name: str):
     ended = 0
     for action in np.random.default_rng(0).integers(single.action_space.n, size=100):
         assert all((alone[part] == together[part][0]).all() for part in alone)
-        alone, reward, terminated, truncated, _ = single.step(action)
+        alone, reward, terminated, truncated, said = single.step(action)
         together, rewards, terminations, truncations, information = batch.step(np.array([action]))
         assert (rewards[0], terminations[0], truncations[0]) == (reward, terminated, truncated)
+        assert information.get("_final_obs", [False])[0] == (terminated or truncated)
         if terminated or truncated:
             ended += 1
-            assert information["ended"].tolist() == [0]
-            assert all((alone[part] == information["final_obs"][part][0]).all() for part in alone)
-            alone, _ = single.reset()
+            assert all((alone[part] == information["final_obs"][0][part]).all() for part in alone)
+            assert said == {name: numbers[0] for name, numbers in information["final_info"].items()}
+            alone, said = single.reset()
+        assert said == {name: information[name][0] for name in said}
     assert ended >= 3
+
+
+def test_only_what_ended_is_final():
+    """What is marked has ended, with its last observation; the others go on and have none."""
+    envs = gymnasium.make_vec("Sokoban-turtle-v0", num_envs=8, change_share=0.02, step_share=0.3)
+    envs.reset(seed=0)
+    envs.action_space.seed(0)
+    partly = 0
+    for _ in range(100):
+        _, _, terminated, truncated, information = envs.step(envs.action_space.sample())
+        ended = terminated | truncated
+        if not ended.any():
+            assert "final_obs" not in information
+            continue
+        partly += not ended.all()
+        assert (information["_final_obs"] == ended).all()
+        assert (information["_final_info"] == ended).all()
+        assert [last is not None for last in information["final_obs"]] == ended.tolist()
+        assert all(envs.single_observation_space.contains(last) for last in information["final_obs"][ended])
+        assert (information["final_info"]["steps"][ended] > 0).all()
+        assert (information["steps"][ended] == 0).all()
+    assert partly > 0
 
 
 @pytest.mark.parametrize("name", REPRESENTATIONS)
