@@ -11,7 +11,7 @@ from converter.drawing import Drawing, Shape
 from converter.plan import Plan
 from converter.polyline import path_length
 from converter.raster import Image, paint, paint_over
-from converter.render_scene import agent_shape, body_shape, object_color, room_drawing
+from converter.render_scene import agent_shape, body_shape, object_color, object_shapes, room_drawing
 from converter.replay import Step, points_along, replay, start_positions
 from converter.scene import Scene
 from converter.shape import FloatArray
@@ -81,7 +81,7 @@ def _frames(
     still = _still(scene, start_positions(scene), scene.agent.position, room, theme)
     yield from repeat(paint_over(empty, still), timing.frames(FIRST_REST_S))
     for step in steps:
-        objects = _objects(scene, step.positions, room.unit, theme)
+        objects = object_shapes(scene, step.positions, room.unit, theme)
         resting = tuple(shape for i, shape in enumerate(objects) if i != step.carried)
         ground = paint_over(empty, replace(room, items=resting))
         for position in _sampled(step.segment.path, timing.travel_frames(step.segment.length)):
@@ -95,15 +95,8 @@ def _frames(
 
 def _still(scene: Scene, positions: FloatArray, agent: FloatArray, room: Drawing, theme: Theme) -> Drawing:
     """Objects and agent with nothing held."""
-    objects = _objects(scene, positions, room.unit, theme)
+    objects = object_shapes(scene, positions, room.unit, theme)
     return replace(room, items=(*objects, agent_shape(scene, agent, room.unit, theme)))
-
-
-def _objects(scene: Scene, positions: FloatArray, unit: float, theme: Theme) -> list[Shape]:
-    return [
-        body_shape(body, object_color(scene, body, theme), unit, theme, position)
-        for body, position in zip(scene.objects, positions, strict=True)
-    ]
 
 
 def _moving(scene: Scene, step: Step, position: FloatArray, unit: float, theme: Theme) -> tuple[Shape, ...]:

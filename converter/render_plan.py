@@ -105,15 +105,17 @@ def _ghost(shape: Shape, theme: Theme) -> Shape:
     )
 
 
-def _carry_path(path: FloatArray, color: Color, unit: float, theme: Theme) -> list[Item]:
+def carry_lines(path: FloatArray, color: Color, unit: float, theme: Theme) -> list[Line]:
+    """A path (n, 2) [m] of carrying in the object's colour, with an outline; `unit` is that of the drawing."""
     width = theme.carry_width * unit
+    return [Line(path, width + 2 * CASING * unit, mixed(color, theme.outline, GHOST_SHADE)), Line(path, width, color)]
+
+
+def _carry_path(path: FloatArray, color: Color, unit: float, theme: Theme) -> list[Item]:
     casing = mixed(color, theme.outline, GHOST_SHADE)
-    arrow = _arrow(path, 2 * ARROW_LENGTH * unit)
-    return [
-        Line(path, width + 2 * CASING * unit, casing),
-        Line(path, width, color),
-        *(Shape((head,), color, outline=casing, outline_width=CASING * unit) for head in arrow),
-    ]
+    heads = _arrow(path, 2 * ARROW_LENGTH * unit)
+    arrow = [Shape((head,), color, outline=casing, outline_width=CASING * unit) for head in heads]
+    return [*carry_lines(path, color, unit, theme), *arrow]
 
 
 def _move_path(path: FloatArray, unit: float, theme: Theme) -> list[Item]:

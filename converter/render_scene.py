@@ -3,6 +3,7 @@
 import numpy as np
 
 from converter.drawing import Drawing, Item, Rounded, Shape, box, disc, extent, footprint
+from converter.replay import start_positions
 from converter.scene import Body, Scene
 from converter.shape import FloatArray
 from converter.theme import PAPER, Color, Theme
@@ -12,7 +13,7 @@ def scene_drawing(scene: Scene, *, theme: Theme = PAPER) -> Drawing:
     """The scene at its start."""
     empty = room_drawing(scene, theme)
     unit = empty.unit
-    movable = [body_shape(body, object_color(scene, body, theme), unit, theme) for body in scene.objects]
+    movable = object_shapes(scene, start_positions(scene), unit, theme)
     agent = agent_shape(scene, scene.agent.position, unit, theme)
     return Drawing(empty.lower, empty.upper, empty.background, (*empty.items, *movable, agent))
 
@@ -40,6 +41,14 @@ def room_drawing(scene: Scene, theme: Theme) -> Drawing:
 def body_shape(body: Body, color: Color, unit: float, theme: Theme, position: FloatArray | None = None) -> Shape:
     """An object at its own position or at `position` (2,) [m]; `unit` is that of the drawing."""
     return _outlined(footprint(body, position), color, unit, theme)
+
+
+def object_shapes(scene: Scene, positions: FloatArray, unit: float, theme: Theme) -> list[Shape]:
+    """All objects at `positions` (n_objects, 2) [m]; `unit` is that of the drawing."""
+    return [
+        body_shape(body, object_color(scene, body, theme), unit, theme, position)
+        for body, position in zip(scene.objects, positions, strict=True)
+    ]
 
 
 def agent_shape(scene: Scene, position: FloatArray, unit: float, theme: Theme) -> Shape:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from converter.drawing import Drawing, Inset, Item, Label, Line, Rounded, Shape, disc, footprint
-from converter.render_scene import agent_shape, body_shape, object_color, room_drawing
+from converter.render_scene import agent_shape, object_color, object_shapes, room_drawing
+from converter.replay import start_positions
 from converter.scene import Scene
 from converter.shape import FloatArray
 from converter.theme import PAPER, Theme
@@ -66,7 +67,7 @@ def _panel(scene: Scene, space: Space, theme: Theme) -> Drawing:
 
 
 def _items(scene: Scene, space: Space, unit: float, theme: Theme) -> list[Item]:
-    items: list[Item] = [body_shape(body, object_color(scene, body, theme), unit, theme) for body in scene.objects]
+    items: list[Item] = [*object_shapes(scene, start_positions(scene), unit, theme)]
     items += [Shape(space.obstacles, theme.outline, FORBIDDEN_OPACITY)] if space.obstacles else []
     items += [Line(edge, TREE_WIDTH * unit, theme.move) for edge in space.edges]
     items += [Shape((disc(edge[1], TURN_RADIUS * unit),), theme.move) for edge in space.edges]

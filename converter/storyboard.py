@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from converter.drawing import Drawing, Item, Line, Shape, disc
+from converter.drawing import Drawing, Shape, disc
 from converter.plan import Plan
-from converter.render_plan import CASING, GHOST_SHADE
-from converter.render_scene import agent_shape, body_shape, object_color, room_drawing
+from converter.render_plan import carry_lines
+from converter.render_scene import agent_shape, object_color, object_shapes, room_drawing
 from converter.replay import Step, replay
 from converter.scene import Scene
 from converter.shape import FloatArray
 from converter.sheet import Card, sheet_drawing
-from converter.theme import PAPER, Theme, mixed
+from converter.theme import PAPER, Theme
 from pcg.errors import InputError
 
 DOT_RADIUS = 9.0
@@ -56,10 +56,8 @@ def _grasp_frame(scene: Scene, step: Step, goals: FloatArray, index: int, theme:
     frame = _frame(scene, step.positions, step.segment.path[0], goals, theme)
     assert step.carried is not None  # noqa: S101  # only carries come here
     color = object_color(scene, scene.objects[step.carried], theme)
-    width, unit = theme.carry_width * frame.unit, frame.unit
-    way = step.segment.path + step.offset
-    casing = mixed(color, theme.outline, GHOST_SHADE)
-    lines = [Line(way, width + 2 * CASING * unit, casing), Line(way, width, color)]
+    unit = frame.unit
+    lines = carry_lines(step.segment.path + step.offset, color, unit, theme)
     ring = Shape(
         (disc(goals[index], DOT_RADIUS * unit),), theme.subgoal, outline=theme.outline, outline_width=RING_WIDTH * unit
     )
@@ -70,13 +68,9 @@ def _frame(scene: Scene, positions: FloatArray, agent: FloatArray, goals: FloatA
     """The scene with its objects at `positions` (n_objects, 2) [m], and all subgoals `goals` (n, 2) [m]."""
     room = room_drawing(scene, theme)
     unit = room.unit
-    items: list[Item] = [
-        body_shape(body, object_color(scene, body, theme), unit, theme, position)
-        for body, position in zip(scene.objects, positions, strict=True)
-    ]
-    items.append(agent_shape(scene, agent, unit, theme))
+    movable = [*object_shapes(scene, positions, unit, theme), agent_shape(scene, agent, unit, theme)]
     dots = [
         Shape((disc(goal, DOT_RADIUS * unit),), theme.subgoal, outline=theme.badge, outline_width=unit)
         for goal in goals
     ]
-    return replace(room, items=(*room.items, *dots, *items))
+    return replace(room, items=(*room.items, *dots, *movable))

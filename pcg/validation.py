@@ -18,7 +18,7 @@ class Document(BaseModel):
 
 
 MAX_DEPTH = 20
-"""Deepest nesting of plain values."""
+"""Deepest nesting of lists and mappings."""
 
 
 def _plain(values: dict[str, Any]) -> dict[str, Any]:

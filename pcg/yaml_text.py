@@ -11,9 +11,7 @@ from typing import Any
 import yaml
 
 from pcg.errors import InputError
-
-MAX_DEPTH = 20
-"""Deepest nesting of lists and mappings."""
+from pcg.validation import MAX_DEPTH
 
 MAX_VALUES = 500_000
 """Keys and values of a document, lists and mappings counting twice; each takes some hundred bytes to read."""

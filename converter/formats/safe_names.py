@@ -1,6 +1,7 @@
 """Names for file formats that allow less than ours: letters, digits and `_ . -`, no two alike."""
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9_.-]+")
@@ -17,14 +18,15 @@ def safe_names(names: Sequence[str], reserved: Iterable[str] = ()) -> list[str]:
         reserved: Names that must not be used, because they mean something else there.
     """
     taken = {name.lower() for name in reserved}
+    # The number that a name has got last: thousands of names may be alike.
+    numbers: defaultdict[str, int] = defaultdict(lambda: 1)
     safe = []
     for name in names:
         plain = _UNSAFE.sub("_", name)
-        plain = plain if plain[:1].isalpha() else f"n_{plain}"
-        candidate, count = plain, 1
+        candidate = plain = plain if plain[:1].isalpha() else f"n_{plain}"
         while candidate.lower() in taken:
-            count += 1
-            candidate = f"{plain}_{count}"
+            numbers[plain.lower()] += 1
+            candidate = f"{plain}_{numbers[plain.lower()]}"
         taken.add(candidate.lower())
         safe.append(candidate)
     return safe
