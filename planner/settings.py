@@ -50,6 +50,7 @@ _AMOUNTS = (
     "subgoal_size",
     "shortcut_rounds",
     "improve_rounds",
+    "mbts_max_violation",
     "mbts_noise",
     "mbts_action_cost",
     "mbts_acceleration_weight",
@@ -64,7 +65,7 @@ _AMOUNTS = (
 _RANGES: tuple[tuple[tuple[str, ...], Callable[[float], bool], str], ...] = (
     (_COUNTS, lambda value: value >= 1, "at least 1"),
     (_AMOUNTS, lambda value: value >= 0, "at least 0"),
-    (("rejection_cell", "novelty_cell", "mbts_max_violation"), lambda value: value > 0, "> 0"),
+    (("rejection_cell", "novelty_cell"), lambda value: value > 0, "> 0"),
     (("near_share", "contact_share", "explore_share"), lambda value: 0 <= value <= 1, "from 0 to 1"),
     (("keep_share",), lambda value: 0 < value <= 1, "> 0 and at most 1"),
 )
