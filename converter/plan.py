@@ -25,6 +25,9 @@ from pcg.errors import InputError
 from pcg.files import read_text, write_text
 from pcg.validation import Document, PlainText, PlainValues, validated
 
+TOUCH_SLACK = 1e-6
+"""Agent and object touch if their gap is no more than the scene's tolerance plus this [m]."""
+
 MAX_SEGMENTS = 10_000
 """Segments, and subgoals, of a plan's file."""
 

@@ -30,7 +30,7 @@ from pcg import solver
 from pcg.data_folder import data_folder
 from pcg.generate import random_levels
 from planner import PlanResult, settings_for, solve
-from planner.configuration_space import ObstacleSet
+from planner.configuration_space import contact_border
 from planner.contact_curve import ContactCurve
 from planner.motion import MotionPlanner, MotionResult, motion_planner
 from planner.nlp import SwitchQuery
@@ -156,7 +156,7 @@ def switch_contest(name: str, problem: Problem, seeds: int) -> Contest:
     curve, relative = ContactCurve(body, scene.agent.radius), agent_space.obstacles.moved(-position)
     nlp = SwitchQuery(
         position=position,
-        parts=ObstacleSet.of(body.cores, [scene.agent.radius + part.edge_radius for part in body.parts]),
+        parts=contact_border(scene.agent.radius, body),
         agent_obstacles=agent_space.obstacles,
         object_obstacles=object_space.obstacles,
         lower=region.lower,

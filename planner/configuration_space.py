@@ -204,6 +204,11 @@ def agent_obstacles(agent: Agent, body: Body, tolerance: float) -> ObstacleSet:
     return ObstacleSet.of(body.cores, rho)
 
 
+def contact_border(radius: float, body: Body) -> ObstacleSet:
+    """Around `body`, relative to its position: a disc of `radius` [m] touches it where its centre is on the border."""
+    return ObstacleSet.of(body.cores, [radius + part.edge_radius for part in body.parts])
+
+
 def body_obstacles(moving: Body, body: Body, tolerance: float) -> ObstacleSet:
     """Forbidden positions of `moving` relative to the position of `body`."""
     if not heights_meet(moving.bottom_top, body.bottom_top):

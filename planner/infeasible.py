@@ -16,7 +16,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from converter.plan import Status
+from converter.plan import TOUCH_SLACK, Status
 from converter.scene import NUMERIC_SLACK, Body, Scene
 from converter.shape import FloatArray, Part
 from planner.configuration_space import ARC_EXCESS, ConfigurationSpace, ObstacleSet, agent_obstacles
@@ -32,7 +32,7 @@ PATIENCE_S = 0.1
 _FAR = 100.0
 """Further [m] than any object reaches over the bounds."""
 
-_SLACK = 2e-6
+_SLACK = 2 * TOUCH_SLACK
 """More than the gap [m], beyond the tolerance, that the verification lets pass as touching."""
 
 

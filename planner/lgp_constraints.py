@@ -18,6 +18,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
+from converter.plan import TOUCH_SLACK
 from converter.shape import FloatArray
 from planner.configuration_space import ObstacleSet
 
@@ -27,7 +28,7 @@ FAR = 1e3
 MARGIN = 1e-6
 """Asked of every clearance beyond its bound [m], so that what the optimiser leaves violated is still free."""
 
-TOUCH_GAP = 5e-7
+TOUCH_GAP = TOUCH_SLACK / 2
 """Gap of a touching grasp [m], the middle of what a plan may have beside the tolerance."""
 
 

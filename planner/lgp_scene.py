@@ -7,7 +7,7 @@ import casadi as ca
 import numpy as np
 
 from converter.shape import FloatArray
-from planner.configuration_space import ObstacleSet
+from planner.configuration_space import ObstacleSet, contact_border
 from planner.lgp_constraints import PolygonBlock
 from planner.logic import Surface
 from planner.pick_place import Region
@@ -37,11 +37,10 @@ class LgpStructure:
 
 def obstacle_sets(problem: Problem) -> Iterator[ObstacleSet]:
     """Walls for the agent, objects for the agent, cores to be touched, walls for objects, objects for objects."""
-    radius = problem.scene.agent.radius
     yield problem.agent_walls
     yield from problem.agent_objects
     for body in problem.scene.objects:
-        yield ObstacleSet.of(body.cores, [radius + part.edge_radius for part in body.parts])
+        yield contact_border(problem.scene.agent.radius, body)
     yield from problem.object_walls
     for row in problem.object_objects:
         yield from row

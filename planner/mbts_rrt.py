@@ -10,10 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from converter.plan import TOUCH_SLACK
 from converter.shape import FloatArray
-from planner.configuration_space import ObstacleSet
+from planner.configuration_space import contact_border
 from planner.kernel import points_free
-from planner.lgp_constraints import TOUCH_GAP
 from planner.lgp_motion import after
 from planner.logic import Skeleton, Surface
 from planner.motion import motion_planner
@@ -69,7 +69,6 @@ def motions_between(
 def touches(problem: Problem, configuration: Configuration, index: int) -> bool:
     """Whether agent and object are no further apart than the tolerance; whether they overlap is a matter of motion."""
     body, scene = problem.scene.objects[index], problem.scene
-    reach = [scene.agent.radius + part.edge_radius + scene.tolerance + 2 * TOUCH_GAP for part in body.parts]
-    near = ObstacleSet.of(body.cores, reach)
+    near = contact_border(scene.agent.radius + scene.tolerance + TOUCH_SLACK, body)
     offset = configuration.agent - configuration.objects[index]
     return not points_free(offset[None], *near.arrays)[0]

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from converter.shape import FloatArray
-from planner.configuration_space import ConfigurationSpace, ObstacleSet
+from planner.configuration_space import ConfigurationSpace, contact_border
 from planner.contact_curve import ContactCurve
 from planner.kernel import BoolArray
 from planner.motion import motion_planner
@@ -90,12 +90,12 @@ class SampledPickPlace:
     def _switch_configurations(self, index: int, region: Region) -> Iterator[tuple[FloatArray, FloatArray]]:
         """Grasp and placement (2,) [m] of each solution that the exact tests confirm."""
         start = self._configuration.objects[index]
-        body, radius = self._problem.scene.objects[index], self._problem.scene.agent.radius
+        scene = self._problem.scene
         agent_space = self._problem.agent_space(self._configuration, held=index)
         object_space = self._problem.object_space(self._configuration, index)
         query = SwitchQuery(
             position=start,
-            parts=ObstacleSet.of(body.cores, [radius + part.edge_radius for part in body.parts]),
+            parts=contact_border(scene.agent.radius, scene.objects[index]),
             agent_obstacles=agent_space.obstacles,
             object_obstacles=object_space.obstacles,
             lower=region.lower,

@@ -51,10 +51,15 @@ class Problem:
     """A scene with its configuration-space obstacles; objects are addressed by index.
 
     Attributes:
+        scene: The scene.
+        n_objects: Number of movable objects.
+        goal_index: The goal-object.
+        initial: Where everything is at the start.
         agent_walls: Obstacles that the walls are to the agent.
         agent_objects: What each object is to the agent, relative to its own position.
         object_walls: Obstacles that the walls are to each object.
         object_objects: What object k is to object i at [i][k], relative to the position of k.
+        sight_objects: How each object blocks lines of sight, relative to its own position.
 
     Raises:
         InputError: bodies overlap at the start, or one is out of bounds.

@@ -15,14 +15,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from converter.plan import Plan, Segment, Subgoal
+from converter.plan import TOUCH_SLACK, Plan, Segment, Subgoal
 from converter.scene import AGENT, NUMERIC_SLACK, Scene
 from converter.shape import FloatArray
 from pcg.errors import InputError
 from planner.penetration import Prism, deepest_contacts
-
-TOUCH_SLACK = 1e-6
-"""A grasp may leave a gap of the scene's tolerance plus this [m]; placements may differ from `subgoals` by this."""
 
 
 class ViolationKind(StrEnum):
@@ -69,7 +66,7 @@ def verify(scene: Scene, plan: Plan) -> list[Violation]:
     """Every violation of `plan` in `scene`, in the order of the motion; an empty list means that it is valid.
 
     Of two bodies that collide in a segment the deepest place is reported. Only `scene.tolerance` counts, not the
-    plan's; `require_same_scene` compares the two. A plan that is not solved or that names unknown objects is not
+    plan's; `require_same_scene` compares the two. Placements may differ from `subgoals` by `TOUCH_SLACK`. A plan that is not solved or that names unknown objects is not
     followed further.
     """
     if not plan.solved:
