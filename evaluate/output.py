@@ -8,14 +8,22 @@ from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 from rich.text import Text
 
 from evaluate.number_text import three_digits
 from pcg.printable import printable
 
-__all__ = ["Progress", "counted", "log", "print_json", "print_line", "print_table", "progress"]
+__all__ = ["Progress", "counted", "loading", "log", "print_json", "print_line", "print_table", "progress"]
 
 PIPE_WIDTH = 10_000
 """Line width where no terminal limits it, so that no table is cut."""
@@ -72,6 +80,15 @@ def progress(*extra: str) -> Progress:
         disable=not console.is_terminal,
         transient=True,
     )
+
+
+def loading() -> Progress:
+    """Says on a terminal why nothing happens yet, for as long as it is entered."""
+    console = Console(file=sys.stderr)
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    shown = Progress(*columns, console=console, disable=not console.is_terminal, transient=True)
+    shown.add_task("loading; the first run also compiles", total=None)
+    return shown
 
 
 def _rendered(table: Table) -> str:

@@ -78,7 +78,7 @@ def test_a_seed_fixes_all_files(tmp_path: Path):
 
 
 def test_the_demo_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """One row for each level and puzzle, and pictures of levels, scenes and plans."""
+    """One row for each level and puzzle, pictures of levels, scenes and plans, and a sheet of all plans."""
     demo.run(tmp_path, [PUZZLES / "cube-free.yaml", PUZZLES / "wall-easy.yaml"], levels=1)
     output = capsys.readouterr().out
     rows = [line.split() for line in output.splitlines() if line.startswith(" ")]
@@ -86,6 +86,7 @@ def test_the_demo_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     pictures = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.suffix in {".png", ".gif"}}
     scenes = ("random-0-0", "cube-free", "wall-easy")
     assert pictures == {
+        "plans.png",
         "levels/random-0-0.png",
         *(f"scenes/{scene}.png" for scene in scenes),
         *(f"plans/{scene}-Rnd+FPR-0.{format_}" for scene in scenes for format_ in ("png", "gif")),

@@ -22,7 +22,7 @@ from evaluate.commands.options import (
 )
 from evaluate.inputs import read_scenes, require_writable
 from evaluate.names import safe_name
-from evaluate.output import counted, log, print_json, print_line, print_table, progress
+from evaluate.output import counted, loading, log, print_json, print_line, print_table, progress
 from evaluate.setting_values import assignments, changed
 from evaluate.trial import TrialOutcome, require_plannable, run_trial, warm_up
 from planner import Settings, settings_for
@@ -67,7 +67,8 @@ def run(
     for path, scene in named.items():
         require_plannable(scene, of_planner, str(path))
     require_writable(out)
-    warm_up(of_planner)
+    with loading():
+        warm_up(of_planner)
     results: list[SolveResult] = []
     with progress() as bar:
         for scene in bar.track(named.values(), total=len(named), description="scenes"):

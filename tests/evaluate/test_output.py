@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from evaluate.output import print_json, print_table, progress
+from evaluate.output import loading, print_json, print_table, progress
 
 
 def test_tables_show_values_as_people_write_them(capsys: pytest.CaptureFixture[str]):
@@ -38,6 +38,8 @@ def test_json_is_one_document_of_plain_characters(capsys: pytest.CaptureFixture[
 
 def test_no_progress_in_a_pipe(capsys: pytest.CaptureFixture[str]):
     """A progress display prints nothing unless stderr is a terminal."""
+    with loading():
+        pass
     with progress("extra") as bar:
         assert list(bar.track(range(3))) == [0, 1, 2]
     assert capsys.readouterr() == ("", "")
