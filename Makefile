@@ -5,7 +5,9 @@ BIN := .venv/bin
 INSTALLED := .venv/.installed
 RL_BIN := .venv-rl/bin
 RL_INSTALLED := .venv-rl/.installed
-COMPILE := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-header --group dev
+# By the oldest Python that pyproject.toml allows: otherwise by that of .venv, and older ones could not use the locks.
+COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+  --no-emit-index-url --no-header --group dev
 
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-rl demo bench corpus corpus-check test test-rl fuzz lock dist install-check
