@@ -6,6 +6,7 @@ supersampling, and a mirrored drawing gives the mirrored picture. Images are (h,
 the top.
 """
 
+import math
 from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
@@ -163,17 +164,22 @@ def _paint_label(image: Image, drawing: Drawing, label: Label) -> None:
 
 
 def _paint_inset(image: Image, drawing: Drawing, inset: Inset) -> None:
-    """Puts the inner picture on whole pixels, so that tiles of one size look alike and meet without a gap."""
+    """Puts the inner picture on whole pixels; where it meets another one, both end at the same ones."""
     pixel = _pixel(image, drawing)
     size = inset.drawing.upper - inset.drawing.lower
     width, height = np.array([1.0, size[1] / size[0]]) * inset.width / pixel
-    left = round(float(inset.lower[0] - drawing.lower[0]) / pixel)
-    top = round(float(drawing.upper[1] - inset.lower[1]) / pixel - height)
-    inner = _inset_image(inset.drawing, max(round(width), 1), max(round(height), 1))
-    rows = slice(max(top, 0), min(top + inner.shape[0], image.shape[0]))
-    columns = slice(max(left, 0), min(left + inner.shape[1], image.shape[1]))
+    left, bottom = np.array([1.0, -1.0]) * (inset.lower - [drawing.lower[0], drawing.upper[1]]) / pixel
+    x, y = (_whole(left), _whole(left + width)), (_whole(bottom - height), _whole(bottom))
+    inner = _inset_image(inset.drawing, max(x[1] - x[0], 1), max(y[1] - y[0], 1))
+    rows = slice(max(y[0], 0), min(y[0] + inner.shape[0], image.shape[0]))
+    columns = slice(max(x[0], 0), min(x[0] + inner.shape[1], image.shape[1]))
     if rows.start < rows.stop and columns.start < columns.stop:
-        image[rows, columns] = inner[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+        image[rows, columns] = inner[rows.start - y[0] : rows.stop - y[0], columns.start - x[0] : columns.stop - x[0]]
+
+
+def _whole(edge: float) -> int:
+    """The nearest whole number; halves go up, those that rounding errors have moved too."""
+    return math.floor(edge + 0.5 + FULL_SLACK)
 
 
 @lru_cache(maxsize=64)

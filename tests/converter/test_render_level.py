@@ -35,6 +35,16 @@ def test_size_includes_the_outer_wall(every_tile: Level):
     assert image_of(every_tile, 16).shape == (3 * 16, 9 * 16, 3)
 
 
+@pytest.mark.parametrize("width_px", [77, 148, 250, 401, 500])
+def test_tiles_meet_at_any_width(width_px: int):
+    """Between tiles of floor nothing shines through, however many pixels a tile has."""
+    image = paint(level_drawing(Level(np.zeros((8, 10), dtype=np.uint8))), width_px)
+    tile_px = width_px / 12
+    first, beyond = int(np.ceil(tile_px)) + 1, int(11 * tile_px) - 1
+    inner = image[first : int(9 * tile_px) - 1, first:beyond]
+    assert inner.min() >= np.rint(np.array(PAPER.floor_line) * 255).min()
+
+
 def test_outer_wall_surrounds_the_level(every_tile: Level):
     """Each tile of the border is the picture of a wall."""
     image = image_of(every_tile)
