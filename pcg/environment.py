@@ -44,10 +44,13 @@ from pcg.xsb import format_level
 Observation = dict[str, npt.NDArray[Any]]
 
 
+_COUNTED = tuple(column.name.lower() for column in Column)
+
+
 def information(episodes: Episodes) -> dict[str, IntArray]:
     """(n,) numbers by name: what is known about the maps, the columns of `Column`, and `steps` and `changes` done."""
-    counted = {column.name.lower(): episodes.statistics[:, column].astype(np.int64) for column in Column}
-    return {**counted, "steps": episodes.steps.copy(), "changes": episodes.changes.copy()}
+    counted = zip(_COUNTED, episodes.statistics.T.astype(np.int64), strict=True)
+    return {**dict(counted), "steps": episodes.steps.copy(), "changes": episodes.changes.copy()}
 
 
 def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # before 1.4 no generic class at run time

@@ -1,4 +1,7 @@
+import hashlib
 import json
+import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -6,17 +9,21 @@ from pathlib import Path
 
 import pytest
 
-from pcg.agents import Agent
+from pcg.agents import Agent, policy_path, read_agents
 from pcg.corpus import CorpusSettings, build_corpus, differences, write_corpus
+from pcg.corpus_card import card
 from pcg.generate import generated_levels
 from pcg.level_set import read_level_set, read_manifest
 from pcg.metrics import occluded
 from pcg.random_source import RandomSource
 from pcg.report import report_levels, summarise
+from pcg.representation import REPRESENTATIONS
 from pcg.request import Proposal, Request
 from pcg.sokoban import apply_moves, is_solved
+from pcg.swept_disc import disc_occluded
 from pcg.symmetry import content_hash, symmetries
 
+SHIPPED = Path(__file__).parents[2] / "data" / "corpus"
 SETTINGS = CorpusSettings(generated=12, kept=4, occluded=5, test=1, seed=3)
 AGENTS = {
     "m0": Agent("m0", "narrow", Request(pushes=(3, 8))),
@@ -38,6 +45,32 @@ def test_quotas_are_even():
     """122 occluded levels of 36 agents: 14 times 4 and 22 times 3."""
     quotas = CorpusSettings().quotas(36)
     assert (sum(quotas), quotas.count(4), quotas.count(3)) == (122, 14, 22)
+
+
+def test_the_shipped_corpus_is_what_its_card_says():
+    """36 agents with ten levels each, two of them for testing; 122 occluded; walls, provenance and solutions."""
+    levels, entries, agents = read_level_set(SHIPPED), read_manifest(SHIPPED / "manifest.jsonl"), read_agents()
+    assert [level.name for level in levels] == [entry.name for entry in entries]
+    assert len({entry.content_hash for entry in entries}) == len(entries) == 360
+    assert Counter(entry.agent for entry in entries) == Counter(dict.fromkeys(agents, 10))
+    occluded_by_agent = Counter(entry.agent for entry in entries if entry.occluded)
+    assert Counter(occluded_by_agent.values()) == {4: 14, 3: 22}
+    assert Counter(entry.agent for entry in entries if entry.split == "test") == Counter(dict.fromkeys(agents, 2))
+    walls = [entry.statistics.walls for entry in entries]
+    assert (min(walls), max(walls), round(sum(walls) / 360)) == (7, 26, 15)
+    for level, entry in zip(levels, entries, strict=True):
+        assert re.fullmatch(rf"{entry.agent}-[0-9]{{1,2}}", entry.name)
+        request = agents[entry.agent].request
+        assert (entry.solvable, entry.solvable_by_any, entry.seed) == (True, True, 0)
+        assert request.pushes[0] <= (entry.pushes or 0) <= request.pushes[1]
+        assert level.goal_crate == entry.goal_crate
+        assert is_solved(apply_moves(level, entry.solution or ""))
+        assert occluded(level, entry.goal_crate) == entry.occluded
+        assert disc_occluded(level, entry.goal_crate) == entry.disc_occluded
+    assert {entry.weights_hash for entry in entries} == {
+        hashlib.sha256(policy_path(name).read_bytes()).hexdigest() for name in REPRESENTATIONS
+    }
+    assert (SHIPPED / "README.md").read_text() == card(entries, CorpusSettings().generated)
 
 
 def test_a_corpus_is_what_was_asked_for(corpus: Path):
