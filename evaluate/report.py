@@ -4,26 +4,22 @@ Numbers are aggregated in data frames, scenes pass one at a time, so memory grow
 the page shows, not with plans.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import polars as pl
 
 from converter.plan import Plan
 from converter.scene import Scene
 from evaluate.plots import Plot, plots_of
-from evaluate.published import PublishedTime, success_by_occlusion
-from evaluate.scene_groups import OCCLUSION, Grouping, groupings
+from evaluate.published import PublishedTime
+from evaluate.scene_groups import groupings
 from evaluate.scene_records import SceneRecord, scene_records
-from evaluate.scene_statistics import SceneStatistics
 from evaluate.store import StoredTrials
 from evaluate.table import Table
-from evaluate.tables_methods import comparison_table, methods_table
-from evaluate.tables_scenes import facts_table, plans_table, times_table
-from evaluate.tables_success import success_table
+from evaluate.tables import tables_of
 from evaluate.trial_frame import names_in, read_trials, reading
 from pcg import json_text
 
@@ -114,7 +110,7 @@ def read_report(
         solved=int(frame["solved"].sum()),
         scenes=tuple(names_in(frame, "scene")),
         methods=tuple(names_in(frame, "method")),
-        tables=tuple(_tables(frame, facts, groups, published)),
+        tables=tuple(tables_of(frame, facts, groups, published)),
         plots=tuple(plots_of(frame, groups)),
         provenance=_provenance(folder),
     )
@@ -144,26 +140,6 @@ def _title(folder: Path) -> str:
     with StoredTrials(folder) as store:
         study = store.study()
     return folder.resolve().name if study is None else study.name
-
-
-def _tables(
-    frame: pl.DataFrame,
-    facts: Mapping[str, SceneStatistics],
-    groups: Sequence[Grouping],
-    published: Mapping[tuple[str, str], PublishedTime] | None,
-) -> Iterator[Table]:
-    # Intervals come out the same in every report of the same trials.
-    rng = np.random.default_rng(0)
-    yield methods_table(frame, rng)
-    if (comparisons := comparison_table(frame, rng)) is not None:
-        yield comparisons
-    for grouping in groups:
-        beside = success_by_occlusion() if published is not None and grouping.name.startswith(OCCLUSION) else None
-        yield success_table(frame, grouping, beside)
-    yield times_table(frame, published)
-    yield plans_table(frame)
-    if facts:
-        yield facts_table(facts)
 
 
 def _provenance(folder: Path) -> Provenance:

@@ -9,8 +9,7 @@ from functools import cached_property, partial
 from converter.scene import Scene
 from evaluate.method import Method
 from evaluate.record import failed_row, run_recorded
-from evaluate.store import StoredTrials, StudyRecord, TrialRow, TrialStore
-from evaluate.tables import Cell, Result, by_scene_and_method, markdown
+from evaluate.store import StudyRecord, TrialRow, TrialStore
 from evaluate.trial import Trial, prepare
 from evaluate.workers import Execute, Job
 
@@ -97,18 +96,13 @@ class StudySummary:
         trials: Trials of the study.
         run: Trials that this call ran.
         skipped: Trials that had been run before.
-        cells: Results by scene and method, of all trials.
+        solved: Trials with a verified plan, those of earlier calls included.
     """
 
     trials: int
     run: int
     skipped: int
-    cells: dict[tuple[str, str], Cell]
-
-    @property
-    def solved(self) -> int:
-        """Trials with a verified plan, those of earlier calls included."""
-        return sum(cell.solved for cell in self.cells.values())
+    solved: int
 
 
 def run_study(
@@ -119,7 +113,7 @@ def run_study(
     job: Job[Trial, TrialRow] | None = None,
     on_trial: Callable[[TrialRow | None], None] = lambda _: None,
 ) -> StudySummary:
-    """Runs the trials that `store` lacks and returns the results of all.
+    """Runs the trials that `store` lacks.
 
     Args:
         study: What to run.
@@ -133,7 +127,8 @@ def run_study(
         WorkerStartError: the workers do not start.
     """
     store.add_scenes(study.scenes)
-    store.set_study(study.record())
+    record = study.record()
+    store.set_study(record)
     skipped = finished = 0
 
     def remaining() -> Iterator[Trial]:
@@ -151,29 +146,5 @@ def run_study(
             store.add(row)
             finished += 1
             on_trial(row)
-    return StudySummary(study.size, finished, skipped, results(study, store))
-
-
-def results(study: Study, store: StoredTrials) -> dict[tuple[str, str], Cell]:
-    """The results of the study's trials that `store` holds, by scene's label and method."""
-    record = study.record()
-    return by_scene_and_method(
-        Result(study.label(row.scene, row.preset), row.method, row.verified is True, row.time_s)
-        for row in store.rows(plans=False)
-        if record.includes(row)
-    )
-
-
-def study_table(study: Study, cells: dict[tuple[str, str], Cell]) -> str:
-    """The Markdown table of a study."""
-    presets = ", ".join(f"`{preset}`" for preset in dict.fromkeys(m.settings.preset for m in study.methods))
-    limits = ", ".join(f"{limit:g} s" for limit in dict.fromkeys(m.settings.time_limit for m in study.methods))
-    note = (
-        f"Planning time [s], mean (standard deviation) over the solved runs of {len(study.seeds)} seeds, and the "
-        f"percentage solved where it is below 100; - where none is solved, nothing where none was run. Bold: the "
-        f"largest share solved, and of these the least mean. A run is solved if its plan passes the independent "
-        f"verification. "
-        f"Settings {presets}, time limit {limits}; last row: runs solved, with the 95 % Wilson interval."
-    )
-    scenes = [study.label(scene.name, scene.preset) for scene in study.scenes]
-    return markdown(study.name, note, scenes, [method.name for method in study.methods], cells)
+    solved = sum(row.verified is True for row in store.rows(plans=False) if record.includes(row))
+    return StudySummary(study.size, finished, skipped, solved)

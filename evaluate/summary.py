@@ -1,14 +1,16 @@
-"""What became of the trials of one method on one scene, and how tables show it."""
+"""What became of some trials, of one method on one scene for example, and how tables show it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+
+import polars as pl
 
 from evaluate.number_text import three_digits
 
 
 @dataclass(frozen=True)
 class Summary:
-    """The trials of one method on one scene; means are over the solved ones, None without any.
+    """Some trials; means are over the solved ones, None without any.
 
     Attributes:
         trials: How many there were.
@@ -29,9 +31,36 @@ class Summary:
     path_length: float | None = None
 
     @property
+    def rate(self) -> float:
+        """Share of trials solved; 0 without trials."""
+        return self.solved / self.trials if self.trials else 0.0
+
+    @property
     def percent(self) -> float:
         """Share of trials solved, 0..100."""
-        return 100 * self.solved / self.trials
+        return 100 * self.rate
+
+
+NOTHING = Summary(0, 0, None, None)
+"""No trials at all."""
+
+
+def summaries(frame: pl.DataFrame, *by: str) -> dict[tuple[str, ...], Summary]:
+    """What happened, by the values of some columns of the trials (`evaluate.trial_frame.read_trials`)."""
+    solved = pl.col("solved")
+    grouped = frame.group_by(by, maintain_order=True).agg(
+        pl.len(),
+        solved.sum().alias("n_solved"),
+        pl.col("time_s").filter(solved).mean(),
+        pl.col("time_s").filter(solved).std().alias("deviation"),
+        (pl.col("time_s") - pl.col("subgoal_time_s")).filter(solved).mean().alias("net"),
+        pl.col("pick_places").filter(solved).mean(),
+        pl.col("path_length_m").filter(solved).mean(),
+    )
+    return {
+        tuple(names): Summary(trials, n, mean, 0.0 if n == 1 else deviation, net, pick_places, length)
+        for *names, trials, n, mean, deviation, net, pick_places, length in grouped.iter_rows()
+    }
 
 
 def time_text(cell: Summary, *, net: bool = False) -> str:

@@ -1,120 +1,67 @@
-"""Tables of a study: what happened per scene and method, as numbers and as Markdown."""
+"""The tables of a study, each of which says what its trials were allowed."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
-from evaluate.statistics import deviation, mean, wilson_interval
-from evaluate.summary import Summary, best_of, time_text
-from evaluate.table import BLANK, Entry, Table, as_markdown
+import numpy as np
+import polars as pl
+
+from evaluate.published import PublishedTime, success_by_occlusion
+from evaluate.scene_groups import OCCLUSION, Grouping
+from evaluate.scene_statistics import SceneStatistics
+from evaluate.table import Table, as_markdown
+from evaluate.tables_methods import comparison_table, methods_table
+from evaluate.tables_scenes import facts_table, plans_table, times_table
+from evaluate.tables_success import success_table
 
 
-@dataclass(frozen=True)
-class Result:
-    """What a table needs of one trial.
+def tables_of(
+    frame: pl.DataFrame,
+    facts: Mapping[str, SceneStatistics],
+    groups: Sequence[Grouping],
+    published: Mapping[tuple[str, str], PublishedTime] | None,
+) -> Iterator[Table]:
+    """Tables of methods, then of success, then of scenes.
 
-    Attributes:
-        scene: Name of the scene.
-        method: Name of the method.
-        solved: Whether the trial ended with a plan that passed verification.
-        time_s: Planning time [s].
+    Args:
+        frame: The trials, as `evaluate.trial_frame.read_trials` gives them.
+        facts: Statistics of the scenes by their names.
+        groups: Ways to group the scenes.
+        published: Published times to stand beside those of the study; with them also the paper's success rates.
     """
-
-    scene: str
-    method: str
-    solved: bool
-    time_s: float
-
-
-@dataclass
-class Cell:
-    """The trials of one scene and method, or of one method.
-
-    Attributes:
-        trials: How many there were.
-        times: Planning times of the solved ones [s].
-    """
-
-    trials: int = 0
-    times: list[float] = field(default_factory=list)
-
-    def add(self, result: Result) -> None:
-        """Counts one trial."""
-        self.trials += 1
-        if result.solved:
-            self.times.append(result.time_s)
-
-    @property
-    def solved(self) -> int:
-        """How many trials were solved."""
-        return len(self.times)
-
-    @property
-    def rate(self) -> float:
-        """Share of solved trials; 0 without trials."""
-        return self.solved / self.trials if self.trials else 0.0
-
-    @property
-    def rate_interval(self) -> tuple[float, float]:
-        """95 % confidence interval of the share."""
-        return wilson_interval(self.solved, self.trials)
-
-    @property
-    def mean_time(self) -> float | None:
-        """Mean planning time over the solved trials [s]."""
-        return mean(self.times)
-
-    @property
-    def time_deviation(self) -> float | None:
-        """Standard deviation of the planning time over the solved trials [s]."""
-        return deviation(self.times)
-
-    @property
-    def summary(self) -> Summary:
-        """The same without the single times."""
-        return Summary(self.trials, self.solved, self.mean_time, self.time_deviation)
+    for table in _results(frame, groups, published):
+        yield _with_conditions(table, frame)
+    if facts:
+        yield facts_table(facts)
 
 
-def by_scene_and_method(results: Iterable[Result]) -> dict[tuple[str, str], Cell]:
-    """The results of each scene and method."""
-    cells: dict[tuple[str, str], Cell] = {}
-    for result in results:
-        cells.setdefault((result.scene, result.method), Cell()).add(result)
-    return cells
+def overview(name: str, frame: pl.DataFrame) -> str:
+    """The Markdown document of the study `name`: times by scene and method, and the methods over all scenes."""
+    tables = times_table(frame), methods_table(frame, np.random.default_rng(0))
+    titled = (replace(table, title=f"{name}: {table.title[0].lower()}{table.title[1:]}") for table in tables)
+    return "\n".join(as_markdown(_with_conditions(table, frame)) for table in titled)
 
 
-def by_method(cells: Mapping[tuple[str, str], Cell]) -> dict[str, Cell]:
-    """The results of each method over all scenes."""
-    totals: dict[str, Cell] = {}
-    for (_, method), cell in cells.items():
-        total = totals.setdefault(method, Cell())
-        total.trials += cell.trials
-        total.times.extend(cell.times)
-    return totals
+def _results(
+    frame: pl.DataFrame, groups: Sequence[Grouping], published: Mapping[tuple[str, str], PublishedTime] | None
+) -> Iterator[Table]:
+    # Intervals come out the same in every report of the same trials.
+    rng = np.random.default_rng(0)
+    yield methods_table(frame, rng)
+    if (comparisons := comparison_table(frame, rng)) is not None:
+        yield comparisons
+    for grouping in groups:
+        beside = success_by_occlusion() if published is not None and grouping.name.startswith(OCCLUSION) else None
+        yield success_table(frame, grouping, beside)
+    yield times_table(frame, published)
+    yield plans_table(frame)
 
 
-def markdown(
-    title: str,
-    note: str,
-    scenes: Sequence[str],
-    methods: Sequence[str],
-    cells: Mapping[tuple[str, str], Cell],
-) -> str:
-    """A Markdown document with one row per scene, one column per method and a last row with the share solved."""
-    totals = by_method(cells)
-    rows = [_scene_row(scene, methods, cells) for scene in scenes]
-    rows.append((Entry("solved"), *(_share(totals.get(method, Cell())) for method in methods)))
-    return as_markdown(Table("study", title, note, ("scene", *methods), tuple(rows)))
-
-
-def _scene_row(scene: str, methods: Sequence[str], cells: Mapping[tuple[str, str], Cell]) -> tuple[Entry, ...]:
-    ran = {method: cells[scene, method].summary for method in methods if (scene, method) in cells}
-    best = best_of(ran)
-    entries = (Entry(time_text(ran[m]), bold=m in best) if m in ran else BLANK for m in methods)
-    return Entry(scene), *entries
-
-
-def _share(cell: Cell) -> Entry:
-    if not cell.trials:
-        return BLANK
-    low, high = cell.rate_interval
-    return Entry(f"{cell.solved}/{cell.trials} ({100 * low:.0f} to {100 * high:.0f} %)")
+def _with_conditions(table: Table, frame: pl.DataFrame) -> Table:
+    """The table with a note on settings, time limits and seeds."""
+    presets = " and ".join(f"`{name}`" for name in frame["settings"].drop_nulls().unique(maintain_order=True))
+    limits = " and ".join(f"{limit:g} s" for limit in frame["time_limit"].drop_nulls().unique().sort())
+    seeds = frame["seed"].n_unique()
+    said = [f"settings {presets}"] * bool(presets) + [f"time limit {limits}"] * bool(limits)
+    note = ", ".join([*said, f"{seeds} seed{'' if seeds == 1 else 's'}"])
+    return replace(table, note=f"{table.note} {note[0].upper()}{note[1:]}.")

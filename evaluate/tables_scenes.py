@@ -7,7 +7,7 @@ import polars as pl
 
 from evaluate.published import TIME_COLUMNS, PublishedTime, scene_key
 from evaluate.scene_statistics import SceneStatistics
-from evaluate.summary import Summary, best_of, time_text
+from evaluate.summary import Summary, best_of, summaries, time_text
 from evaluate.table import BLANK, Entry, Table
 from evaluate.trial_frame import names_in
 
@@ -15,31 +15,9 @@ PAPER = "(paper)"
 """Behind a method's name: the column of its published numbers."""
 
 
-Summaries = Mapping[tuple[str, str], Summary]
-"""By scene and method."""
-
-
-def summaries(frame: pl.DataFrame) -> dict[tuple[str, str], Summary]:
-    """What happened for each scene and method of the trials (`evaluate.trial_frame.read_trials`)."""
-    solved = pl.col("solved")
-    grouped = frame.group_by("scene", "method", maintain_order=True).agg(
-        pl.len(),
-        solved.sum().alias("n_solved"),
-        pl.col("time_s").filter(solved).mean(),
-        pl.col("time_s").filter(solved).std().alias("deviation"),
-        (pl.col("time_s") - pl.col("subgoal_time_s")).filter(solved).mean().alias("net"),
-        pl.col("pick_places").filter(solved).mean(),
-        pl.col("path_length_m").filter(solved).mean(),
-    )
-    return {
-        (scene, method): Summary(trials, n, mean, 0.0 if n == 1 else deviation, net, pick_places, length)
-        for scene, method, trials, n, mean, deviation, net, pick_places, length in grouped.iter_rows()
-    }
-
-
 def times_table(frame: pl.DataFrame, published: Mapping[tuple[str, str], PublishedTime] | None = None) -> Table:
     """Table I: planning times of every method on every scene, optionally with published ones beside them."""
-    cells, scenes, methods = summaries(frame), names_in(frame, "scene"), names_in(frame, "method")
+    cells, scenes, methods = summaries(frame, "scene", "method"), names_in(frame, "scene"), names_in(frame, "method")
     beside = published or {}
     known = {method for scene in scenes for name, method in beside if name == scene_key(scene)}
     heads = [head for method in methods for head in ([method, f"{method} {PAPER}"] if method in known else [method])]
@@ -65,7 +43,7 @@ def times_table(frame: pl.DataFrame, published: Mapping[tuple[str, str], Publish
 
 def plans_table(frame: pl.DataFrame) -> Table:
     """Pick-places and way of the agent of every method on every scene."""
-    cells, scenes, methods = summaries(frame), names_in(frame, "scene"), names_in(frame, "method")
+    cells, scenes, methods = summaries(frame, "scene", "method"), names_in(frame, "scene"), names_in(frame, "method")
     heads = [f"{method} {what}" for method in methods for what in ("pick-places", "path [m]")]
     rows = []
     for scene in scenes:
@@ -154,7 +132,7 @@ def _same(a: float, b: float) -> bool:
 
 
 def _times_data(
-    scenes: Sequence[str], methods: Sequence[str], cells: Summaries
+    scenes: Sequence[str], methods: Sequence[str], cells: Mapping[tuple[str, ...], Summary]
 ) -> tuple[tuple[str, ...], tuple[tuple[object, ...], ...]]:
     """The numbers in the format of published tables, so that one study can stand beside another."""
     rows = []

@@ -63,6 +63,8 @@ HOMES = {
         "evaluate/plots.py",
         "evaluate/report.py",
         "evaluate/scene_records.py",
+        "evaluate/summary.py",
+        "evaluate/tables.py",
         "evaluate/tables_methods.py",
         "evaluate/tables_scenes.py",
         "evaluate/tables_success.py",

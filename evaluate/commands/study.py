@@ -10,10 +10,13 @@ import typer
 from evaluate.commands.options import Demonstrations, Json, Out, application
 from evaluate.output import log, print_json, print_line, print_table, progress
 from evaluate.specification import read_study
+from evaluate.statistics import wilson_interval
 from evaluate.store import TrialStore
-from evaluate.study import StudySummary, run_study, study_table
+from evaluate.study import StudySummary, run_study
 from evaluate.study_progress import FIELD, StudyProgress
-from evaluate.tables import Cell, by_method
+from evaluate.summary import NOTHING, Summary, summaries
+from evaluate.tables import overview
+from evaluate.trial_frame import read_trials
 from evaluate.workers import Execute, WorkerStartError, run_tasks
 from pcg.errors import InputError
 from pcg.files import write_text
@@ -47,6 +50,8 @@ def run(
     Example:  manipuzzle study data/studies/smoke.yaml --out out/study --workers 2
     """
     study = read_study(spec, demonstrations)
+    if not study.size:
+        raise InputError(str(spec), "methods: none of them suits any of the scenes")
     execute = _execution(workers, cluster, out)
     for note in study.notes:
         log(note)
@@ -63,13 +68,14 @@ def run(
             ) from None
     for line in display.errors():
         log(f"{line}; `manipuzzle trials {out} --status error` lists them")
-    write_text(out / TABLE_FILE, study_table(study, summary.cells))
-    totals = by_method(summary.cells)
-    by_name = {method: totals.get(method, Cell()) for method in (m.name for m in study.methods)}
+    trials = read_trials(out)
+    write_text(out / TABLE_FILE, overview(study.name, trials))
+    of_methods = summaries(trials, "method")
+    by_name = {method.name: of_methods.get((method.name,), NOTHING) for method in study.methods}
     if json:
         print_json(_document(summary, by_name))
     else:
-        rows = [(m, c.trials, c.solved, c.mean_time, c.time_deviation) for m, c in by_name.items()]
+        rows = [(name, s.trials, s.solved, s.mean, s.deviation) for name, s in by_name.items()]
         print_table(["method", "trials", "solved", "mean time [s]", "deviation [s]"], rows)
         print_line(
             f"{summary.trials} trials: {summary.run} run, {summary.skipped} skipped, {summary.solved} solved; "
@@ -89,22 +95,22 @@ def _execution(workers: int, cluster: str | None, out: Path) -> Execute:
     return partial(run_on_cluster, address=cluster, name=str(out.resolve()))
 
 
-def _document(summary: StudySummary, by_name: Mapping[str, Cell]) -> dict[str, object]:
+def _document(summary: StudySummary, by_name: Mapping[str, Summary]) -> dict[str, object]:
     return {
         "trials": summary.trials,
         "run": summary.run,
         "skipped": summary.skipped,
         "solved": summary.solved,
-        "by_method": {method: _cell_document(cell) for method, cell in by_name.items()},
+        "by_method": {name: _method_document(found) for name, found in by_name.items()},
     }
 
 
-def _cell_document(cell: Cell) -> dict[str, object]:
+def _method_document(found: Summary) -> dict[str, object]:
     return {
-        "trials": cell.trials,
-        "solved": cell.solved,
-        "rate": cell.rate,
-        "rate_interval_95": list(cell.rate_interval),
-        "mean_time_s": cell.mean_time,
-        "time_deviation_s": cell.time_deviation,
+        "trials": found.trials,
+        "solved": found.solved,
+        "rate": found.rate,
+        "rate_interval_95": list(wilson_interval(found.solved, found.trials)),
+        "mean_time_s": found.mean,
+        "time_deviation_s": found.deviation,
     }

@@ -258,6 +258,15 @@ def test_study_reports_and_resumes(run: Run, folder: Path):
     assert "2 trials: 0 run, 2 skipped, 2 solved" in again.stdout
 
 
+def test_a_study_without_trials_is_refused(run: Run, folder: Path):
+    """Where no method suits any scene there is nothing to run, which is said before anything is written."""
+    (folder / "spec.yaml").write_text("name: s\nscenes: [room.yaml]\nmethods: [Push]\nseeds: 2\n")
+    result = run("study", "spec.yaml", "--out", "study")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == "error: spec.yaml: methods: none of them suits any of the scenes\n"
+    assert not (folder / "study").exists()
+
+
 def test_workers_that_cannot_start_are_one_line(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch):
     """Too little memory for a worker, here stood in for by a preparation that fails, ends the study clearly."""
     monkeypatch.setattr("evaluate.study.prepare", operator.truediv)

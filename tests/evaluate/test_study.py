@@ -12,8 +12,8 @@ import pytest
 from converter.scene import Scene
 from evaluate.method import Method, method_named
 from evaluate.store import TrialRow, TrialStore
-from evaluate.study import Study, StudySummary, run_study, study_table
-from evaluate.tables import Cell
+from evaluate.study import Study, StudySummary, run_study
+from evaluate.trial_frame import read_trials
 from evaluate.workers import run_tasks
 from planner import Settings
 
@@ -73,8 +73,8 @@ def test_finished_trials_are_not_repeated(study: Study, run: Runner):
     assert (grown.run, grown.skipped, grown.solved) == (2, 5, 7)
 
 
-def test_other_settings_are_other_trials(study: Study, run: Runner, small_room: Scene):
-    """Changed settings or geometry run anew, and the table shows only what belongs to the study."""
+def test_other_settings_are_other_trials(study: Study, run: Runner, small_room: Scene, tmp_path: Path):
+    """Changed settings or geometry run anew, and tables show only what belongs to the study."""
     run(study, "quick")
     for changed in (
         replace(study, methods=(Method("Rnd+FPR", Settings(candidates=50)),)),
@@ -82,7 +82,9 @@ def test_other_settings_are_other_trials(study: Study, run: Runner, small_room: 
     ):
         summary = run(changed, "quick")
         assert (summary.run, summary.skipped, summary.solved) == (5, 0, 5)
-    assert run(study, "forbidden").cells["small-room", "Rnd+FPR"].trials == 5
+    assert run(study, "forbidden").solved == 5
+    assert len(rows_in(tmp_path / "out")) == 15
+    assert read_trials(tmp_path / "out")["scene"].to_list() == ["small-room"] * 5
 
 
 def test_an_interrupt_keeps_finished_rows(study: Study, run: Runner, tmp_path: Path):
@@ -108,14 +110,6 @@ def test_large_studies_are_not_listed(small_room: Scene):
     first = [(trial.seed, trial.method.name) for trial in itertools.islice(study.trials(), 3)]
     assert first == [(0, "Rnd+FPR"), (0, "Rnd+R"), (1, "Rnd+FPR")]
     assert study.size == 100_000_000
-
-
-def test_the_table_names_its_preset(study: Study):
-    """A table without settings could not be compared."""
-    text = study_table(study, {("small-room", "Rnd+FPR"): Cell(5, [0.5, 0.5])})
-    assert "of 5 seeds" in text
-    assert "Settings `fast`, time limit 60 s;" in text
-    assert "| small-room | 0.500 (0) 40% |" in text
 
 
 def test_scenes_in_two_geometries_are_told_apart(study: Study, small_room: Scene):

@@ -1,54 +1,35 @@
-"""Tables of a study."""
+"""All tables of a study."""
 
-from evaluate.summary import time_text
-from evaluate.tables import Cell, Result, by_method, by_scene_and_method, markdown
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
-RESULTS = [
-    Result("wall", "Rnd+FPR", solved=True, time_s=1.0),
-    Result("wall", "Rnd+FPR", solved=True, time_s=3.0),
-    Result("wall", "Rnd+R", solved=True, time_s=0.5),
-    Result("wall", "Rnd+R", solved=False, time_s=60.0),
-    Result("maze", "Rnd+R", solved=False, time_s=60.0),
-]
+from evaluate.scene_groups import groupings
+from evaluate.tables import overview, tables_of
+from evaluate.trial_frame import read_trials
+from tests.evaluate.test_tables_success import FACTS
 
 
-def test_cells_count_solved_runs_only():
-    """Mean and deviation are over solved runs, the rate over all."""
-    cell = by_scene_and_method(RESULTS)["wall", "Rnd+R"]
-    assert (cell.trials, cell.solved, cell.rate, cell.mean_time, cell.time_deviation) == (2, 1, 0.5, 0.5, 0.0)
+def test_every_table_names_its_settings(two_methods: Path):
+    """Without settings, limits and seeds a result could not be compared; what scenes are like depends on none."""
+    facts = dict.fromkeys(["wall", "corner", "open"], FACTS)
+    tables = {table.name: table for table in tables_of(read_trials(two_methods), facts, groupings(facts), None)}
+    assert list(tables) == ["methods", "comparisons", "success-occlusion", "times", "plans", "facts"]
+    said = {name: table.note.endswith(" Settings `fast`, time limit 10 s, 2 seeds.") for name, table in tables.items()}
+    assert said == {name: name != "facts" for name in tables}
 
 
-def test_totals_add_up():
-    """The total of a method holds all of its trials."""
-    totals = by_method(by_scene_and_method(RESULTS))
-    assert {method: (cell.solved, cell.trials) for method, cell in totals.items()} == {
-        "Rnd+FPR": (2, 2),
-        "Rnd+R": (1, 3),
-    }
-
-
-def test_markdown_table():
-    """Deviation beside the mean, the percentage only below 100, a dash for nothing solved, nothing if not run."""
-    text = markdown("smoke", "A note.", ["wall", "maze"], ["Rnd+FPR", "Rnd+R"], by_scene_and_method(RESULTS))
-    assert text.splitlines() == [
-        "# smoke",
-        "",
-        "A note.",
-        "",
-        "| scene | Rnd+FPR | Rnd+R |",
-        "| --- | ---: | ---: |",
-        "| wall | **2.00 (1.41)** | 0.500 (0) 50% |",
-        "| maze |  | - |",
-        "| solved | 2/2 (34 to 100 %) | 1/3 (6 to 79 %) |",
+def test_the_overview_in_markdown(two_methods: Path):
+    """Times by scene, then the methods over all scenes, under the name of the study."""
+    lines = overview("smoke", read_trials(two_methods)).splitlines()
+    assert [line for line in lines if line.startswith("# ")] == [
+        "# smoke: planning times by scene and method",
+        "# smoke: methods over all scenes",
     ]
+    assert "| wall | **2.00 (1.41)** | 4.00 (0) \\[1.00\\] 50% |" in lines
+    assert any(line.startswith("| A | 3/5 | 60.0% (23 to 88) |") for line in lines)
 
 
-def test_nearly_all_is_not_all():
-    """A rate below 100 % is never printed as 100 %."""
-    cell = Cell(trials=10_000, times=[1.0] * 9_999)
-    assert time_text(cell.summary) == "1.00 (0) 99.9%"
-
-
-def test_names_cannot_break_the_table():
+def test_names_cannot_break_the_table(make_study: Callable[..., Path], make_run: Callable[..., Any]):
     """A vertical bar in a name is escaped."""
-    assert "| a\\|b |" in markdown("t", "n", ["a|b"], [], {})
+    assert "| a\\|b |" in overview("t", read_trials(make_study([make_run("a|b", "A", 0, 1.0)])))
