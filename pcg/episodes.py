@@ -14,6 +14,7 @@ from pcg.episode_kernel import advance
 from pcg.level import TileArray
 from pcg.representation import REPRESENTATIONS, Representation
 from pcg.reward import Control, RewardSettings, distances, reward
+from pcg.solver import MAX_CELLS
 from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, make_judge, measure
 
 
@@ -51,6 +52,8 @@ class EpisodeSettings:
             raise ValueError(f"representation {self.representation!r} is none of {', '.join(REPRESENTATIONS)}")
         if min(self.rows, self.columns) < 1:
             raise ValueError(f"rows and columns must be at least 1, found {self.rows} and {self.columns}")
+        if self.cells > MAX_CELLS:
+            raise ValueError(f"{self.rows} x {self.columns} cells are too many; at most {MAX_CELLS} are solved")
 
     @property
     def cells(self) -> int:

@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 import onnxruntime
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from pcg import json_text
 from pcg.arrays import Float32Array, IntArray
@@ -58,8 +58,13 @@ class PolicyMetadata(Document):
     change_share: float = Field(gt=0, le=100)
     step_share: float = Field(gt=0, le=1000)
 
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        self.settings()
+        return self
+
     @classmethod
-    def of(cls, settings: EpisodeSettings) -> "PolicyMetadata":
+    def of(cls, settings: EpisodeSettings) -> Self:
         """The metadata of a policy that was trained with these settings."""
         return cls(
             representation=settings.representation,  # type: ignore[arg-type]  # checked by the settings

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from pcg.frozen import FrozenTiles
 from pcg.level import Level
-from pcg.solver import Solution
+from pcg.solver import MAX_CELLS, Solution
 
 MAX_PUSHES = 10_000
 """Largest number of pushes; stands for the upper end of a push band that has none."""
@@ -18,7 +18,7 @@ class Request:
     """What a level has to be.
 
     Attributes:
-        rows: Inner rows.
+        rows: Inner rows; with the columns at most `pcg.solver.MAX_CELLS` cells.
         columns: Inner columns.
         crates: Crates, at least as many as targets.
         targets: Targets, at least one.
@@ -42,6 +42,8 @@ class Request:
     def __post_init__(self) -> None:
         if min(self.rows, self.columns, self.targets) < 1:
             raise ValueError("rows, columns and targets must be at least 1")
+        if self.cells > MAX_CELLS:
+            raise ValueError(f"{self.rows} x {self.columns} cells are too many; at most {MAX_CELLS} are solved")
         if self.crates < self.targets:
             raise ValueError(f"{self.crates} crates cannot cover {self.targets} targets")
         if not 0 <= self.wall_density[0] <= self.wall_density[1] <= 1:

@@ -13,7 +13,7 @@ from pcg.grid import DIRECTIONS, Cell, shortest_walk
 from pcg.level import Level
 
 MAX_CELLS = 10_000
-"""Levels with more cells are not searched."""
+"""Levels with more cells are not searched; the number of a cell, with the border, has to fit into 16 bits."""
 
 
 class Objective(StrEnum):

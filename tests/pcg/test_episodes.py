@@ -130,6 +130,28 @@ def test_unknown_actions_are_refused(name: str):
     assert (episodes.maps == before).all()
 
 
+@pytest.mark.parametrize(("rows", "columns"), [(100, 101), (200, 200), (0, 5)])
+def test_impossible_sizes_are_refused(rows: int, columns: int):
+    """Compiled code numbers cells in 16 bits, so it must never see a larger board."""
+    with pytest.raises(
+        ValueError, match=f"{rows} x {columns} cells are too many|at least 1, found {rows} and {columns}"
+    ):
+        EpisodeSettings(rows=rows, columns=columns)
+
+
+@pytest.mark.parametrize("shape", [(1, 10_000), (10_000, 1), (100, 100)])
+def test_the_largest_maps_are_solved(shape: tuple[int, int]):
+    """Whatever their shape: the last cells of the board have numbers, too."""
+    tiles = np.zeros(10_000, dtype=np.uint8)
+    tiles[[-6, -4, -2, -1]] = [Tile.PLAYER, Tile.CRATE, Tile.TARGET, Tile.CRATE]
+    settings = EpisodeSettings("wide", *shape)
+    episodes = Episodes(settings, 1)
+    start = Beginning(tiles.reshape(1, *shape), np.zeros((1, *shape), dtype=np.uint8), np.zeros((1, len(Control))))
+    episodes.begin(np.random.default_rng(0), np.array([0]), start)
+    solvable, pushes, goal = episodes.statistics[0, [Column.SOLVABLE, Column.PUSHES, Column.GOAL]]
+    assert (solvable, pushes, goal) == (1, 2, 9_996)
+
+
 def test_unknown_representations_are_refused():
     """The message lists what there is."""
     with pytest.raises(ValueError, match="narrow, turtle, wide"):

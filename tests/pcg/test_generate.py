@@ -84,6 +84,7 @@ def test_other_shapes_and_numbers():
         ({"wall_density": (0.3, 0.2)}, "range"),
         ({"wall_density": (0.3, 1.2)}, "range"),
         ({"rows": 1, "columns": 3}, "cannot hold 4 things"),
+        ({"rows": 101, "columns": 100}, "101 x 100 cells are too many"),
         ({"pushes": (5, 3)}, "range"),
     ],
 )

@@ -117,6 +117,7 @@ def test_metadata_have_to_fit_to_the_network(tmp_path: Path):
         (b'"columns":10', b'"columns":12', "ask for"),
         (b'"representation":"narrow"', b'"representation":"barrow"', "representation"),
         (b'"columns":10', b'"columns"=10', "not a JSON document"),
+        (b'"crates":2,"targets":1', b'"crates":1,"targets":2', "2 targets need as many crates"),
         (b"manipuzzle\x12", b"manipuzzl_\x12", "no policy"),
     ):
         assert old in weights
