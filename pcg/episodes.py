@@ -129,6 +129,14 @@ class Transition:
 class Episodes:
     """n episodes that are stepped together; `begin` starts those that are named anew.
 
+    Args:
+        settings: Size, budgets, what is wanted.
+        n: Number of episodes.
+        archive: (m, rows, columns) maps that novelty is measured against; None for none.
+
+    Raises:
+        ValueError: the archive's maps have another shape.
+
     Attributes:
         settings: Size, budgets, what is wanted.
         maps: (n, rows, columns) tiles.
@@ -157,6 +165,8 @@ class Episodes:
         self.steps = np.zeros(n, dtype=np.int64)
         self.changes = np.zeros(n, dtype=np.int64)
         archive = np.zeros((0, *shape), dtype=np.uint8) if archive is None else archive
+        if archive.shape[1:] != shape:
+            raise ValueError(f"the archive needs maps of {shape[0]} x {shape[1]} cells, found shape {archive.shape}")
         max_crates = settings.reward.crates + settings.spare_crates
         self._wanted = settings.reward.wanted()
         self.judge = make_judge(archive, max_crates, settings.max_states)
@@ -183,10 +193,12 @@ class Episodes:
         """Carries out one action in each episode.
 
         Raises:
-            ValueError: an action is none of the representation's.
+            ValueError: there are more or fewer actions, or one is none of the representation's.
         """
         n_actions = self.representation.n_actions
-        # Compiled code does not look where it writes.
+        # Compiled code does not look where it reads and writes.
+        if actions.shape != self.steps.shape:
+            raise ValueError(f"{len(self.steps)} actions are needed, found shape {actions.shape}")
         if actions.min() < 0 or actions.max() >= n_actions:
             raise ValueError(f"actions must be 0 to {n_actions - 1}, found {actions.min()} to {actions.max()}")
         before = self.distance.copy()

@@ -42,9 +42,10 @@ class FrozenTiles:
     tiles: TileArray
 
     def __post_init__(self) -> None:
-        tiles = np.array(self.tiles, dtype=np.uint8)
+        tiles = np.asarray(self.tiles)
         if tiles.ndim != 2 or tiles.size == 0 or not np.isin(tiles, [*Tile, OPEN]).all():
             raise ValueError("frozen tiles need rows and columns of Tile values or OPEN")
+        tiles = tiles.astype(np.uint8)
         tiles.flags.writeable = False
         object.__setattr__(self, "tiles", tiles)
 

@@ -121,13 +121,22 @@ def test_start_maps_have_about_the_wanted_walls():
 
 @pytest.mark.parametrize("name", REPRESENTATIONS)
 def test_unknown_actions_are_refused(name: str):
-    """An action out of range is named, and nothing is written."""
+    """An action out of range is named, a wrong number of actions too, and nothing is written."""
     episodes, _ = begun(EpisodeSettings(name), 2)
     before, last = episodes.maps.copy(), episodes.representation.n_actions - 1
     for wrong in (-1, last + 1):
         with pytest.raises(ValueError, match=f"0 to {last}"):
             episodes.step(np.array([0, wrong]))
+    for count in (1, 3):
+        with pytest.raises(ValueError, match="2 actions are needed"):
+            episodes.step(np.zeros(count, dtype=np.int64))
     assert (episodes.maps == before).all()
+
+
+def test_an_archive_of_another_shape_is_refused():
+    """Its maps could not be compared."""
+    with pytest.raises(ValueError, match="needs maps of 5 x 6 cells"):
+        Episodes(EpisodeSettings(rows=5, columns=6), 1, np.zeros((3, 6, 5), dtype=np.uint8))
 
 
 @pytest.mark.parametrize(("rows", "columns"), [(100, 101), (200, 200), (0, 5)])

@@ -52,7 +52,8 @@ def test_levels_keep_frozen_tiles_or_not():
     assert FrozenTiles.none(3, 2).kept_by(Level(np.zeros((3, 2), dtype=np.uint8)))
 
 
-def test_unknown_tiles_are_refused():
-    """A number that is no tile is a mistake of the programmer."""
+@pytest.mark.parametrize("tile", [77, 256, -1, 0.5])
+def test_unknown_tiles_are_refused(tile: float):
+    """A number that is no tile is a mistake of the programmer; none wraps around into a valid one."""
     with pytest.raises(ValueError, match="Tile values or OPEN"):
-        FrozenTiles(np.array([[77]]))
+        FrozenTiles(np.array([[tile]]))
