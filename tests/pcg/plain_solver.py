@@ -15,11 +15,28 @@ from pcg.grid import Cell
 from pcg.level import Level
 
 
-def fewest_pushes(level: Level) -> int | None:
-    """The least number of pushes, None if there is no solution."""
+class Outcome(NamedTuple):
+    """The least number of pushes, None if there is no solution, and the number of states that were met."""
+
+    pushes: int | None
+    states: int
+
+
+def search(level: Level, *, by_region: bool = True) -> Outcome:
+    """Searches until the first solution, or through all states that are not hopeless.
+
+    Args:
+        level: A playable level.
+        by_region: Whether states that differ only in the player's place within a region are one.
+    """
     board = _Board.of(level)
     goal = 0 if level.goal_crate is None else board.bit(level.goal_crate)
-    return _search(board, board.bit(level.player), board.mask(level.crates), goal)
+    return _search(board, board.bit(level.player), board.mask(level.crates), goal, by_region=by_region)
+
+
+def fewest_pushes(level: Level) -> int | None:
+    """The least number of pushes, None if there is no solution."""
+    return search(level).pushes
 
 
 class _Push(NamedTuple):
@@ -83,13 +100,15 @@ class _Board:
         return region
 
 
-def _search(board: _Board, player: int, crates: int, goal: int) -> int | None:
+def _search(board: _Board, player: int, crates: int, goal: int, *, by_region: bool) -> Outcome:
     if board.is_solved(crates, goal):
-        return 0
+        return Outcome(0, 1)
+    if board.is_hopeless(crates, goal):
+        return Outcome(None, 1)
     region = board.region(player, crates)
     # This list is the queue too: the loop goes on over the states that it appends.
     states = [_State(crates, goal, region, 0)]
-    met = {(crates, goal): [region]}
+    met = {(crates, goal): [region if by_region else player]}
     for state in states:
         for push in _pushes(board, state):
             moved = _moved(push.crate, push.step)
@@ -99,11 +118,11 @@ def _search(board: _Board, player: int, crates: int, goal: int) -> int | None:
             if board.is_hopeless(crates, goal) or any(region & push.crate for region in regions):
                 continue
             if board.is_solved(crates, goal):
-                return state.pushes + 1
+                return Outcome(state.pushes + 1, len(states) + 1)
             region = board.region(push.crate, crates)
-            regions.append(region)
+            regions.append(region if by_region else push.crate)
             states.append(_State(crates, goal, region, state.pushes + 1))
-    return None
+    return Outcome(None, len(states))
 
 
 def _pushes(board: _Board, state: _State) -> Iterator[_Push]:

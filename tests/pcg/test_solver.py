@@ -193,6 +193,31 @@ def test_more_crates_and_targets(crates: int, targets: int):
     assert solved >= 3
 
 
+@pytest.mark.parametrize("objective", Objective)
+@pytest.mark.parametrize(
+    ("shape", "crates", "targets"), [((6, 7), 2, 1), ((6, 7), 3, 2), ((7, 7), 2, 2), ((5, 6), 2, 1)]
+)
+def test_every_state_is_visited_once(shape: Cell, crates: int, targets: int, objective: Objective):
+    """An unsolvable level takes as many states as the plain twin meets: none is left out, none visited again."""
+    rng = np.random.default_rng(0)
+    most = 0
+    for _ in range(120):
+        is_wall = rng.random(shape) < 0.2
+        player, *free = map(tuple, rng.permutation(np.argwhere(~is_wall)).tolist())
+        level = Level.of(
+            is_wall,
+            players=[player],
+            crates=free[:crates],
+            targets=free[crates : crates + targets],
+            goal_crate=free[0],
+        )
+        solution = solve(level, objective=objective)
+        if not solution.solved:
+            most = max(most, solution.states)
+            assert solution.states == plain_solver.search(level, by_region=objective is Objective.PUSHES).states
+    assert most > 20
+
+
 def test_a_surplus_crate_may_stand_on_a_dead_cell():
     """A crate in a corner is lost, but the other one can still cover the only target."""
     (level,) = parse_levels(

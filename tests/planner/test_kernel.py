@@ -17,8 +17,9 @@ exactly = settings(max_examples=300, deadline=None)
 
 
 def hits(a: FloatArray, b: FloatArray, polygon: FloatArray, rho: float) -> bool:
-    """The kernel's answer for two points."""
-    return bool(segment_hits_polygon(a[0], a[1], b[0], b[1], np.ascontiguousarray(polygon), 0, len(polygon), rho))
+    """The kernel's answer for two points; the rows before and after the polygon's are none of its own."""
+    vertices = np.vstack([[0.0, 0.0], polygon, [0.1, 0.0]])
+    return bool(segment_hits_polygon(a[0], a[1], b[0], b[1], vertices, 1, len(polygon) + 1, rho))
 
 
 @exactly
@@ -122,6 +123,9 @@ SQUARE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
         ((0.4999, -2), (0.4999, 2), -0.5, True),
         ((-3, 1.5), (3, 1.5), 0.5, False),  # slides along the inflated square
         ((-3, 1.4999), (3, 1.4999), 0.5, True),
+        ((0.25, 1.5), (0.25, 3), 0.5, False),  # starts on the inflated square
+        ((0.25, 3), (0.25, 1.5), 0.5, False),  # ends on it
+        ((0.25, 3), (0.25, 1.4999), 0.5, True),
         ((-3, 0), (3, 0), 0.5, True),  # crosses, with both ends and all corners far away
         ((1.3, 1.4), (1.3, 1.4), 0.5 - 1e-9, False),  # on the arc around a corner: 0.3, 0.4, 0.5
         ((1.29, 1.4), (1.29, 1.4), 0.5 - 1e-9, True),
@@ -140,6 +144,13 @@ def test_cores_without_area_vanish_without_radius(core: list[list[float]], rho: 
     crossing = np.array([-1.0, 0.0]), np.array([1.0, 0.0])
     assert not hits(*crossing, np.array(core), rho)
     assert hits(*crossing, np.array(core), 1e-9)
+
+
+@settings(deadline=None)
+@given(points, points, points, points)
+def test_a_segment_has_no_interior_from_whatever_side(a: FloatArray, b: FloatArray, p: FloatArray, q: FloatArray):
+    """Rounding finds no time inside a segment that is crossed at any angle."""
+    assert not hits(a, b, np.array([p, q]), 0.0)
 
 
 @pytest.mark.parametrize("width", [0.0, 5e-324, 1e-17, 1e-16, 1e-12])
@@ -189,7 +200,8 @@ def test_bounds_are_closed():
 def test_joined_sets_are_their_members_moved():
     """A set joined with another one, translated, has the arrays of all members where they are then."""
     triangle, by = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]), np.array([10.0, -20.0])
-    here, there = ObstacleSet.of([SQUARE, triangle], [0.5, -0.1]), ObstacleSet.of([triangle, SQUARE[:1]], [0.2, 0.3])
-    expected = ObstacleSet.of([SQUARE, triangle, triangle + by, SQUARE[:1] + by], [0.5, -0.1, 0.2, 0.3])
-    for found, array in zip(joined(*here.arrays, *there.arrays, by), expected.arrays, strict=True):
-        np.testing.assert_allclose(found, array, atol=1e-14)
+    one, three = [triangle], [SQUARE, triangle, SQUARE[:1]]
+    found = joined(*ObstacleSet.of(one, [0.5]).arrays, *ObstacleSet.of(three, [-0.1, 0.2, 0.3]).arrays, by)
+    expected = ObstacleSet.of([*one, *(polygon + by for polygon in three)], [0.5, -0.1, 0.2, 0.3])
+    for array, wanted in zip(found, expected.arrays, strict=True):
+        np.testing.assert_allclose(array, wanted, atol=1e-14)
