@@ -154,6 +154,28 @@ def test_fewest_moves_agree_with_a_search_over_raw_moves(level: Level):
         check(level, solution)
 
 
+@pytest.mark.parametrize(
+    ("text", "moves", "pushes"),
+    [
+        ("######\n#   @#\n# $ ##\n#  $ #\n#.   #\n######", 7, 3),
+        ("#######\n# #   #\n## $$@#\n#     #\n#.    #\n#######", 9, 4),
+        ("######\n#   @#\n#  $ #\n# . $#\n#    #\n######", 5, 2),
+    ],
+)
+def test_fewest_moves_before_fewest_pushes(text: str, moves: int, pushes: int):
+    """In these levels there are solutions with as few moves and one push more."""
+    solution = solve(parse_levels(text, "test.xsb")[0], objective=Objective.MOVES)
+    assert (solution.moves, solution.pushes) == (moves, pushes)
+
+
+def test_each_objective_has_its_own_solution():
+    """Here two pushes take ten moves and three take eight."""
+    (level,) = parse_levels("######\n# @. #\n# $  #\n# $  #\n######", "test.xsb")
+    by_pushes, by_moves = (solve(level, objective=objective) for objective in (Objective.PUSHES, Objective.MOVES))
+    assert (by_pushes.pushes, by_pushes.moves) == (2, 10)
+    assert (by_moves.pushes, by_moves.moves) == (3, 8)
+
+
 @pytest.mark.parametrize("named", ["any crate", "first crate"])
 def test_no_level_is_missed(named: str):
     """On 1,000 random 10 x 10 levels both objectives find a solution where the plain twin finds one, and no others."""
