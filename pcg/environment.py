@@ -63,8 +63,7 @@ def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # befor
         "scalars": spaces.Box(-SCALAR_LIMIT, SCALAR_LIMIT, (SCALARS,), np.float32),
     }
     if settings.has_position:
-        last = np.array(shape, dtype=np.int64) - 1
-        parts["position"] = spaces.Box(np.zeros_like(last), last, dtype=np.int64)
+        parts["position"] = spaces.MultiDiscrete(list(shape))
     return spaces.Dict(parts)
 
 

@@ -25,11 +25,12 @@ def selected(groups: Sequence[Sequence[Level]], keep: int, occluded_quotas: Sequ
         occluded_quotas: Of each group, how many of those have to be occluded.
 
     Raises:
+        ValueError: a level names no goal crate.
         InputError: a group has too few levels of a kind; it is named by its number.
     """
     levels = [level for group in groups for level in group]
     descriptors = Descriptors.of(levels)
-    is_occluded = np.array([occluded(level, level.goal_crate or (0, 0)) for level in levels])
+    is_occluded = np.array([_is_occluded(level) for level in levels])
     hashes = np.array([content_hash(level) for level in levels])
     nearest = np.full(len(levels), np.inf)
     available = np.ones(len(levels), dtype=np.bool_)
@@ -54,6 +55,12 @@ def selected(groups: Sequence[Sequence[Level]], keep: int, occluded_quotas: Sequ
         chosen.append(sorted(picks))
         begin += len(group)
     return chosen
+
+
+def _is_occluded(level: Level) -> bool:
+    if level.goal_crate is None:
+        raise ValueError(f"level {level.name!r} names no goal crate")
+    return occluded(level, level.goal_crate)
 
 
 def _too_few(number: int, left: dict[bool, int]) -> str:

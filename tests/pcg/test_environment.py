@@ -20,7 +20,7 @@ def made(name: str, **settings: object) -> SokobanEnvironment:
 
 
 @pytest.mark.parametrize("name", REPRESENTATIONS)
-@pytest.mark.parametrize("shape", [(10, 10), (4, 7)])
+@pytest.mark.parametrize("shape", [(10, 10), (4, 7), (1, 8)])
 def test_gymnasium_accepts_the_environments(name: str, shape: tuple[int, int]):
     """Gymnasium's own checker finds nothing to object to, whatever the size."""
     check_env(made(name, rows=shape[0], columns=shape[1], render_mode="ansi"))

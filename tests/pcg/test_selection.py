@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -65,6 +66,12 @@ def test_symmetric_levels_are_chosen_once():
     choices = selected([visible, [*turned, own]], 1, [0, 0])
     taken = visible[choices[0][0]]
     assert [*turned, own][choices[1][0]] not in symmetries(taken)
+
+
+def test_goal_crates_are_needed():
+    """What is hidden cannot be told of a level without one."""
+    with pytest.raises(ValueError, match="level 'a' names no goal crate"):
+        selected([[replace(GROUPS[0][0], name="a", goal_crate=None)]], 1, [0])
 
 
 def test_too_few_levels_of_a_kind():
