@@ -7,6 +7,7 @@ stand for them: an upper bound, the same in every run.
 
 import itertools
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -94,7 +95,12 @@ def generator_of(scene_name: str) -> str | None:
 
 def is_monotone(plan: Plan) -> bool:
     """Whether a plan moves every object at most once."""
-    carried = [segment.object for segment in plan.segments if segment.object is not None]
+    return carries_once(segment.object for segment in plan.segments)
+
+
+def carries_once(objects: Iterable[str | None]) -> bool:
+    """Whether no object is carried twice; one for each segment, None where the agent moves alone."""
+    carried = [name for name in objects if name is not None]
     return len(carried) == len(set(carried))
 
 
