@@ -19,7 +19,7 @@ from evaluate.scene_groups import Grouping
 from evaluate.statistics import FloatArray, solved_within, wilson_interval
 from evaluate.tables_success import success_counts
 from evaluate.trial_frame import names_in, planning_times
-from pcg.printable import printable
+from pcg.printable import one_line, printable
 
 MAX_BOXED_SCENES = 24
 """Scenes in the box plots; of more, those with the longest times are shown."""
@@ -27,6 +27,13 @@ MAX_BOXED_SCENES = 24
 SCENES_A_ROW = 6
 MAX_GROUPS = 8
 """Groups of scenes that fit beside each other."""
+
+LEGEND_COLUMNS = 7
+LEGEND_LENGTH = 45
+"""Letters of a method's name that fit into a column of a paper."""
+
+TITLE_LENGTH = 18
+"""Letters of a scene's name that fit above its plot."""
 
 CURVE_POINTS = 400
 """Steps of a curve; nobody sees more."""
@@ -77,7 +84,7 @@ def times_plot(frame: pl.DataFrame) -> Plot:
         axes = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
         for i, (ax, scene) in enumerate(zip(axes, scenes, strict=False)):
             _boxes(ax, solved.filter(pl.col("scene") == scene), methods)
-            ax.set_title(_plain(scene), fontsize=7)
+            _title(ax, scene)
             if i % columns == 0:
                 ax.set_ylabel("time [s]")
         label_logarithmic(axes[0].yaxis)
@@ -188,12 +195,28 @@ def _success(ax: Axes, frame: pl.DataFrame, grouping: Grouping, methods: Sequenc
 
 
 def _legend(figure: Figure, methods: Sequence[str]) -> None:
+    """The methods below the plots, in as many columns as fit; the figure grows by all rows but the first."""
     handles = [
-        Line2D([], [], color=color_of(i), linestyle=dashes_of(i), label=_plain(method))
+        Line2D([], [], color=color_of(i), linestyle=dashes_of(i), label=_plain(one_line(method, LEGEND_LENGTH)))
         for i, method in enumerate(methods)
     ]
-    columns = 3 if figure.get_figwidth() <= COLUMN_WIDTH else 7
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(methods), columns))
+    columns = min(len(methods), LEGEND_COLUMNS)
+    legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns)
+    while (box := legend.get_window_extent()).width > figure.bbox.width and columns > 1:
+        columns -= 1
+        legend.remove()
+        legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns)
+    rows = math.ceil(len(methods) / columns)
+    figure.set_figheight(figure.get_figheight() + (1 - 1 / rows) * box.height / figure.dpi)
+
+
+def _title(ax: Axes, scene: str) -> None:
+    """The name of a scene above its plot, in letters that fit; the geometry on a line of its own."""
+    name, _, geometry = scene.rpartition(" (")
+    lines = [name, f"({geometry}"] if name and len(scene) > TITLE_LENGTH else [scene]
+    lines = [_plain(one_line(line, 2 * TITLE_LENGTH)) for line in lines]
+    size = 7 * min(1.0, TITLE_LENGTH / max(map(len, lines)))
+    ax.set_title("\n".join(lines), fontsize=size)
 
 
 def _thinned(seconds: FloatArray, shares: FloatArray) -> tuple[FloatArray, FloatArray]:

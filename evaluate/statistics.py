@@ -33,12 +33,12 @@ def mean(values: Sequence[float]) -> float | None:
 
 
 def deviation(values: Sequence[float]) -> float | None:
-    """Sample standard deviation (n - 1); 0 for one value, None without values."""
-    if not values:
+    """Sample standard deviation (n - 1); None without two values."""
+    if len(values) < 2:
         return None
     centre = math.fsum(values) / len(values)
     squares = math.fsum((value - centre) ** 2 for value in values)
-    return math.sqrt(squares / max(len(values) - 1, 1))
+    return math.sqrt(squares / (len(values) - 1))
 
 
 def wilson_interval(successes: int, trials: int, z: float = NORMAL_95) -> tuple[float, float]:

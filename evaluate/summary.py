@@ -16,7 +16,7 @@ class Summary:
         trials: How many there were.
         solved: How many ended with a verified plan.
         mean: Planning time [s].
-        deviation: Its sample standard deviation [s], 0 for one trial.
+        deviation: Its sample standard deviation [s]; None if fewer than two are solved.
         net_mean: Mean planning time without computing subgoals [s]; None for methods that do not tell.
         pick_places: Mean number of pick-places.
         path_length: Mean way of the agent [m].
@@ -58,19 +58,20 @@ def summaries(frame: pl.DataFrame, *by: str) -> dict[tuple[str, ...], Summary]:
         pl.col("path_length_m").filter(solved).mean(),
     )
     return {
-        tuple(names): Summary(trials, n, mean, 0.0 if n == 1 else deviation, net, pick_places, length)
+        tuple(names): Summary(trials, n, mean, deviation, net, pick_places, length)
         for *names, trials, n, mean, deviation, net, pick_places, length in grouped.iter_rows()
     }
 
 
 def time_text(cell: Summary, *, net: bool = False) -> str:
-    """`mean (deviation)`, with the net time in brackets if wanted, and the percentage solved if it is below 100."""
-    if cell.mean is None or cell.deviation is None:
+    """`mean (deviation)`, or `mean` of one trial; in brackets the net time if wanted; the percentage if below 100."""
+    if cell.mean is None:
         return "-"
     brackets = f" [{three_digits(cell.net_mean)}]" if net and cell.net_mean is not None else ""
     # 99.97 % must not be rounded to 100 %.
     share = "" if cell.solved == cell.trials else f" {min(cell.percent, 99.9):.3g}%"
-    return f"{three_digits(cell.mean)} ({three_digits(cell.deviation)}){brackets}{share}"
+    spread = "" if cell.deviation is None else f" ({three_digits(cell.deviation)})"
+    return f"{three_digits(cell.mean)}{spread}{brackets}{share}"
 
 
 def best_of(summaries: Mapping[str, Summary]) -> set[str]:

@@ -70,6 +70,25 @@ def test_labels_of_logarithmic_axes_stand_apart(name: str, low: float, high: flo
     assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
 
 
+def test_long_names_stay_in_the_figure(two_methods: Path):
+    """Legends take fewer columns, titles smaller letters; all is inside, and no title runs into the next one."""
+    long = "a method with settings [keep_share=0.5,near_share=0.0]"
+    frame = pl.concat(
+        read_trials(two_methods).with_columns(
+            method=pl.lit(f"{i} {long}"), scene=pl.lit(f"{'long-' * i}scene-{i} (published)"), solved=pl.lit(value=True)
+        )
+        for i in range(12)
+    )
+    for plot in plots_of(frame, [GROUPING]):
+        plot.figure.draw_without_rendering()
+        (legend,) = plot.figure.legends
+        inside = plot.figure.bbox.padded(1)
+        assert all(inside.contains(x, y) for x, y in legend.get_window_extent().corners())
+        titles = [ax.title.get_window_extent() for ax in plot.figure.axes if ax.get_title()]
+        assert all(inside.contains(x, y) for box in titles for x, y in box.corners())
+        assert not any(one.overlaps(other) for one, other in itertools.combinations(titles, 2))
+
+
 def test_inline_figures_share_no_ids(two_methods: Path):
     """Every reference of an inline figure leads to an element of the same figure."""
     frame = read_trials(two_methods)

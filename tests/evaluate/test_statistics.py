@@ -35,7 +35,7 @@ def test_mean_and_deviation_are_those_of_the_standard_library(values: list[float
 
 def test_few_values():
     """One value has no spread; no value has neither mean nor spread."""
-    assert (mean([3.0]), deviation([3.0])) == (3.0, 0.0)
+    assert (mean([3.0]), deviation([3.0])) == (3.0, None)
     assert (mean([]), deviation([])) == (None, None)
 
 

@@ -26,7 +26,7 @@ def test_the_overview_in_markdown(two_methods: Path):
         "# smoke: planning times by scene and method",
         "# smoke: methods over all scenes",
     ]
-    assert "| wall | **2.00 (1.41)** | 4.00 (0) \\[1.00\\] 50% |" in lines
+    assert "| wall | **2.00 (1.41)** | 4.00 \\[1.00\\] 50% |" in lines
     assert any(line.startswith("| A | 3/5 | 60.0% (23 to 88) |") for line in lines)
 
 
