@@ -55,7 +55,7 @@ def information(episodes: Episodes) -> dict[str, IntArray]:
 
 def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # before 1.4 no generic class at run time
     """The space of one observation."""
-    shape = settings.rows, settings.columns
+    shape = settings.shape
     parts: dict[str, spaces.Space[Any]] = {
         "map": spaces.Box(0, N_TILES - 1, shape, np.uint8),
         "frozen": spaces.Box(0, 1, shape, np.uint8),
@@ -97,7 +97,7 @@ def beginning(
         begun = request_beginning(rng, n, request, settings)
     if start is None:
         return begun
-    if start.shape != (settings.rows, settings.columns) or not np.isin(start, range(N_TILES)).all():
+    if start.shape != settings.shape or not np.isin(start, range(N_TILES)).all():
         raise ValueError(f"start must hold {settings.rows} x {settings.columns} tiles from 0 to {N_TILES - 1}")
     return replace(begun, maps=np.where(begun.frozen, begun.maps, start).astype(np.uint8))
 

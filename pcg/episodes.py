@@ -11,6 +11,7 @@ import numpy as np
 
 from pcg.arrays import BoolArray, FloatArray, IntArray
 from pcg.episode_kernel import advance
+from pcg.grid import Cell
 from pcg.level import TileArray
 from pcg.representation import REPRESENTATIONS, Representation
 from pcg.reward import Control, RewardSettings, distances, reward
@@ -56,6 +57,11 @@ class EpisodeSettings:
             raise ValueError(f"{self.rows} x {self.columns} cells are too many; at most {MAX_CELLS} are solved")
 
     @property
+    def shape(self) -> Cell:
+        """Rows and columns."""
+        return self.rows, self.columns
+
+    @property
     def cells(self) -> int:
         """Number of tiles."""
         return self.rows * self.columns
@@ -68,7 +74,7 @@ class EpisodeSettings:
     @property
     def n_actions(self) -> int:
         """Actions are 0 to n_actions - 1."""
-        return REPRESENTATIONS[self.representation]((self.rows, self.columns), 1).n_actions
+        return REPRESENTATIONS[self.representation](self.shape, 1).n_actions
 
     @property
     def max_changes(self) -> int:
@@ -153,7 +159,7 @@ class Episodes:
     """
 
     def __init__(self, settings: EpisodeSettings, n: int, archive: TileArray | None = None) -> None:
-        shape = settings.rows, settings.columns
+        shape = settings.shape
         self.settings = settings
         self.budgets = settings.max_changes, settings.max_steps
         self.coordinates = np.indices(shape, dtype=np.int64).reshape(2, -1).T.copy()

@@ -43,6 +43,8 @@ class CroppedObservation(gymnasium.ObservationWrapper[Any, np.int64, Any], Recor
         parts = env.observation_space
         if not isinstance(parts, spaces.Dict) or "position" not in parts.spaces:
             raise ValueError("only observations with a position can be cropped; wide has none")
+        if parts["map"].shape != _settings_of(env).shape:
+            raise ValueError("only whole maps of tiles can be cropped; crop first, then make flags of tiles")
         if size < 1 or size % 2 == 0:
             raise ValueError(f"size must be an odd number, found {size}")
         self._margin: int = size // 2
@@ -88,6 +90,8 @@ class FlatObservation(gymnasium.ObservationWrapper[Any, np.int64, Any], RecordCo
         RecordConstructorArgs.__init__(self)
         gymnasium.ObservationWrapper.__init__(self, env)
         self._settings: EpisodeSettings = _settings_of(env)
+        if env.observation_space != env.unwrapped.observation_space:
+            raise ValueError("only the environment's own observations can be flattened, no cropped or one-hot ones")
         self.observation_space = spaces.Box(
             -SCALAR_LIMIT, SCALAR_LIMIT, (observation_size(self._settings),), np.float32
         )

@@ -60,6 +60,17 @@ def test_impossible_crops_are_refused(name: str, size: int, message: str):
         CroppedObservation(gymnasium.make(f"Sokoban-{name}-v0"), size)
 
 
+def test_wrappers_in_another_order_are_refused():
+    """Flags cannot be cropped, and what was cropped or made flags is no vector of a policy."""
+    env = gymnasium.make("Sokoban-narrow-v0")
+    with pytest.raises(ValueError, match="crop first"):
+        CroppedObservation(OneHotObservation(env), 5)
+    for wrapped in (CroppedObservation(env, 5), OneHotObservation(env)):
+        with pytest.raises(ValueError, match="own observations"):
+            FlatObservation(wrapped)
+    assert FlatObservation(gymnasium.wrappers.TimeLimit(env, 9)).reset(seed=0)[0].ndim == 1
+
+
 def test_only_our_environments_can_be_flattened():
     """Another environment has no such settings."""
     with pytest.raises(TypeError, match="no SokobanEnvironment"):
