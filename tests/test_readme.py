@@ -89,5 +89,5 @@ def test_the_puzzle_in_the_formats_page_is_one(tmp_path: Path):
     (text,) = re.findall(r"^```yaml\n(.*?)^```$", (ROOT / "docs" / "formats.md").read_text(), re.MULTILINE | re.DOTALL)
     file = tmp_path / "doorway.yaml"
     file.write_text(text, encoding="utf-8")
-    scene, settings = read_scene(file), settings_for("fast", time_limit=30)
+    scene, settings = read_scene(file), settings_for("fast", time_limit=900)
     assert solve(scene, settings, np.random.default_rng(0)).status is Status.SOLVED

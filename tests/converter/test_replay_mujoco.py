@@ -26,7 +26,7 @@ def planned(name: str, preset: str) -> tuple[Scene, Plan]:
     if name == "maze":
         plan = read_plan(GOLDEN / f"maze-{preset}-plan.json")
     else:
-        settings = settings_for("fast", method="Rnd+FPR", time_limit=120)
+        settings = settings_for("fast", method="Rnd+FPR", time_limit=900)
         plan = solve(scene, settings, np.random.default_rng(0)).to_plan(scene, settings, seed=0)
     assert verify(scene, plan) == []
     return scene, plan
