@@ -1,6 +1,7 @@
 """Who may import what."""
 
 import ast
+import re
 import subprocess
 import sys
 import tomllib
@@ -8,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("pcg", "converter", "planner", "evaluate")
@@ -149,6 +151,34 @@ def test_every_library_is_declared():
     for extra, libraries_of_it in {"cluster": CLUSTER, "rl": LEARNING}.items():
         optional = {requirement.split(">=")[0] for requirement in project["optional-dependencies"][extra]}
         assert optional >= {DISTRIBUTIONS.get(name, name) for name in libraries_of_it}
+
+
+@pytest.mark.parametrize(
+    ("lock", "extras"), [("requirements.lock", ["cluster"]), ("requirements-rl.lock", ["cluster", "rl"])]
+)
+def test_locks_hold_what_is_declared(lock: str, extras: list[str]):
+    """In a version that is allowed, for each Python one; every package with hashes, none with an address."""
+    document = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    text = (ROOT / lock).read_text(encoding="utf-8")
+    entries = [entry for entry in re.split(r"\n(?=\S)", text) if not entry.startswith("#")]
+    assert all("--hash=sha256:" in entry for entry in entries)
+    assert "://" not in text
+    pythons = re.findall(r":: Python :: (3\.\d+)", "\n".join(document["project"]["classifiers"]))
+    assert pythons
+    locked = [Requirement(entry.partition("\\")[0]) for entry in entries]
+    declared = [*document["project"]["dependencies"], *document["dependency-groups"]["dev"]]
+    declared += [line for extra in extras for line in document["project"]["optional-dependencies"][extra]]
+    for wanted in map(Requirement, declared):
+        for python in pythons:
+            (found,) = (r for r in locked if r.name == wanted.name and is_for(r, python))
+            (version,) = found.specifier
+            assert version.version in wanted.specifier, f"{found} on {python}"
+
+
+def is_for(requirement: Requirement, python: str) -> bool:
+    """Whether a requirement counts on Linux with that Python."""
+    environment = {"python_version": python, "python_full_version": f"{python}.0", "sys_platform": "linux"}
+    return requirement.marker is None or requirement.marker.evaluate(environment)
 
 
 @pytest.mark.parametrize(
