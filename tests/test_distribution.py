@@ -15,6 +15,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("pcg", "converter", "planner", "evaluate")
 PICTURE = re.compile(r"!\[[^]]*\]\(([^)]+)\)")
+LINK = re.compile(r"\]\(([^)]+)\)")
 MEGABYTES = 8
 """More than this would be something that does not belong into a distribution: an environment, results, a cache."""
 
@@ -34,8 +35,8 @@ def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
         text=True,
         check=False,
     )
-    if built.returncode != 0 and "hatchling" in built.stderr:
-        pytest.skip("the build backend hatchling is not in uv's cache")
+    if built.returncode != 0 and re.search("hatchling|hatch-fancy-pypi-readme", built.stderr):
+        pytest.skip("the build backend is not in uv's cache")
     assert built.returncode == 0, built.stderr
     return folder
 
@@ -98,8 +99,24 @@ def test_the_distributions_are_small(distributions: Path):
     assert max(sizes.values()) < MEGABYTES, sizes
 
 
-def test_the_changelog_knows_the_version():
-    """The newest entry of the changelog is the version of the package."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    entries = re.findall(r"^## \[(\d+\.\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
-    assert entries[0] == project["version"]
+def test_the_description_names_no_file(wheel: zipfile.ZipFile):
+    """A package index shows it without the files beside the README: only addresses are linked, no pictures shown."""
+    (name,) = (name for name in wheel.namelist() if name.endswith("dist-info/METADATA"))
+    description = wheel.read(name).decode().partition("\n\n")[2]
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(description) > 0.9 * len(readme)
+    assert "Twelve plans with their verdicts" in description
+    assert not [target for target in LINK.findall(description) if not target.startswith("https:")]
+
+
+def test_all_name_the_same_version():
+    """That of the package is the newest in the changelog, and the one that is cited."""
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    changelog, readme, citation = (
+        (ROOT / name).read_text(encoding="utf-8") for name in ("CHANGELOG.md", "README.md", "CITATION.cff")
+    )
+    number, date = re.findall(r"^## \[(\d+\.\d+\.\d+)\] - (\S+)", changelog, re.MULTILINE)[0]
+    assert number == version
+    assert re.findall(r"^version: (.*)$", citation, re.MULTILINE) == [version]
+    assert re.findall(r"^date-released: (.*)$", citation, re.MULTILINE) == [date]
+    assert re.findall(r"^ +version = \{(.*)\}", readme, re.MULTILINE) == [version]
