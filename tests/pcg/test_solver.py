@@ -240,6 +240,27 @@ def test_every_state_is_visited_once(shape: Cell, crates: int, targets: int, obj
     assert most > 20
 
 
+@pytest.mark.parametrize("objective", Objective)
+@pytest.mark.parametrize(("rows", "columns", "crates"), [(4, 5, 2), (5, 5, 2), (4, 4, 3)])
+def test_every_state_of_an_open_room_is_visited_once(rows: int, columns: int, crates: int, objective: Objective):
+    """The table of states grows; the target lies round a corner that no crate can be pushed round.
+
+    #########
+    #@    # #
+    # $     #
+    #   $ #.#
+    #     ###
+    #########
+    """
+    is_wall = np.ones((rows, columns + 2), dtype=bool)
+    is_wall[:, :columns] = is_wall[1, columns] = is_wall[:3, columns + 1] = False
+    placed = [(1, 1), (rows - 2, columns - 2), (1, columns - 2)][:crates]
+    level = Level.of(is_wall, players=[(0, 0)], crates=placed, targets=[(2, columns + 1)], goal_crate=placed[0])
+    solution = solve(level, objective=objective)
+    assert solution.status is SolverStatus.UNSOLVABLE
+    assert solution.states == plain_solver.search(level, by_region=objective is Objective.PUSHES).states
+
+
 def test_a_surplus_crate_may_stand_on_a_dead_cell():
     """A crate in a corner is lost, but the other one can still cover the only target."""
     (level,) = parse_levels(
