@@ -13,9 +13,10 @@ from pathlib import Path
 
 from evaluate.method import method_named
 from evaluate.record import failed_row, run_recorded
-from evaluate.store import TrialRow, TrialStore
+from evaluate.store import TrialStore
 from evaluate.study import Study, run_study
 from evaluate.trial import Trial, warm_up_scene
+from evaluate.trial_row import TrialRow
 from evaluate.workers import Job, run_tasks
 from planner import METHODS, Settings
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from evaluate.packed import unpacked
-from evaluate.store import StoredTrials, TrialRow
+from evaluate.store import StoredTrials
+from evaluate.trial_row import TrialRow
 from pcg import json_text
 
 

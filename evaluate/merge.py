@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
-from evaluate.store import StoredTrials, StudyRecord, TrialStore
+from evaluate.store import StoredTrials, TrialStore
+from evaluate.study_record import StudyRecord
 from pcg.errors import InputError
 
 Value = TypeVar("Value")

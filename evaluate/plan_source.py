@@ -9,7 +9,8 @@ from converter.scene import Scene
 from evaluate.inputs import PLAN_SUFFIXES, expanded, is_plan
 from evaluate.names import safe_name
 from evaluate.record import plan_of
-from evaluate.store import FILE_NAME, StoredTrials, TrialRow
+from evaluate.store import FILE_NAME, StoredTrials
+from evaluate.trial_row import TrialRow
 from pcg.errors import InputError
 from planner.verify import require_same_scene
 

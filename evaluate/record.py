@@ -10,8 +10,8 @@ from pathlib import Path
 
 from converter.plan import Plan, Status, plan_document, plan_from_document
 from evaluate.packed import packed, unpacked
-from evaluate.store import TrialRow
 from evaluate.trial import Trial, TrialOutcome
+from evaluate.trial_row import TrialRow
 from evaluate.workers import Failure
 
 LIBRARIES = ("manipuzzle", "numpy", "numba", "casadi", "ompl", "shapely")

@@ -13,8 +13,7 @@ import math
 import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, astuple, dataclass, fields, replace
-from functools import cached_property
+from dataclasses import asdict, astuple, fields, replace
 from pathlib import Path
 from typing import IO, Annotated, Any, Self
 
@@ -24,6 +23,8 @@ from converter.formats import scene_yaml
 from converter.formats.body_document import Name
 from converter.scene import Scene
 from evaluate.packed import packed, unpacked
+from evaluate.study_record import StudyRecord
+from evaluate.trial_row import TrialRow
 from pcg.errors import InputError
 from pcg.validation import Document, validated
 
@@ -37,56 +38,6 @@ VERSION = 2
 
 MAX_INTEGER = 2**63 - 1
 """Of SQLite."""
-
-
-@dataclass(frozen=True)
-class TrialRow:
-    """One row; the fields are the columns.
-
-    Attributes:
-        key: `Trial.key`.
-        scene: Name of the scene.
-        scene_hash: `Scene.geometry_hash`.
-        method: Name of the method in the study.
-        seed: Seed of the trial.
-        settings: Every setting, JSON; for other people's planners also which one it is.
-        settings_hash: `evaluate.method.Method.hash`.
-        status: A `converter.plan.Status`.
-        verified: Whether the plan passed verification; None without a plan.
-        time_s: Planning time; for a trial that was stopped, its wall time [s].
-        path_length_m: Distance that the agent drives [m]; None without a plan.
-        pick_places: How often an object is picked and placed; None without a plan.
-        counters: Work done, JSON.
-        message: The certificate of the planner, the first violation, or the reason of a failure.
-        plan: The plan file's JSON, compressed by zlib; None without a plan.
-        versions: Of manipuzzle and the libraries that it plans with, JSON.
-        machine: Processor and system.
-        started: ISO 8601, UTC.
-        finished: ISO 8601, UTC.
-        preset: Geometry preset of the scene; None for other geometry.
-    """
-
-    key: str
-    scene: str
-    scene_hash: str
-    method: str
-    seed: int
-    settings: str
-    settings_hash: str
-    status: str
-    verified: bool | None
-    time_s: float
-    path_length_m: float | None
-    pick_places: int | None
-    counters: str
-    message: str | None
-    plan: bytes | None
-    versions: str
-    machine: str
-    started: str
-    finished: str
-    preset: str | None = None
-
 
 _TYPES = {
     "key": "TEXT PRIMARY KEY",
@@ -112,37 +63,6 @@ _SCHEMA = {("table", name, f"CREATE TABLE {name} ({columns}) STRICT") for name, 
 """What SQLite says that a database consists of. A view or a trigger of somebody else could do anything."""
 
 _INSERT = f"INSERT INTO trial VALUES ({', '.join('?' * len(_COLUMNS))})"  # noqa: S608  # no outside text in it
-
-
-@dataclass(frozen=True)
-class StudyRecord:
-    """What the study consists of that last ran in a folder; the folder may hold trials of other studies too.
-
-    Attributes:
-        name: Title of the study.
-        scenes: Name and `Scene.geometry_hash` of each scene, in order. A name may occur once per geometry preset.
-        methods: Name and `Method.hash` of each method, in order.
-        seeds: The seeds.
-        trials: Number of trials; less than the product of the three where a method does not suit a scene. Of merged
-            folders it is the number of trials that they hold.
-    """
-
-    name: str
-    scenes: tuple[tuple[str, str], ...]
-    methods: tuple[tuple[str, str], ...]
-    seeds: tuple[int, ...]
-    trials: int
-
-    def includes(self, row: TrialRow) -> bool:
-        """Whether a row is a trial of the study."""
-        scenes, methods, seeds = self._sets
-        return (
-            (row.scene, row.scene_hash) in scenes and (row.method, row.settings_hash) in methods and row.seed in seeds
-        )
-
-    @cached_property
-    def _sets(self) -> tuple[frozenset[tuple[str, str]], frozenset[tuple[str, str]], frozenset[int]]:
-        return frozenset(self.scenes), frozenset(self.methods), frozenset(self.seeds)
 
 
 class _StudyDocument(Document):

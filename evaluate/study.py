@@ -9,8 +9,10 @@ from functools import cached_property, partial
 from converter.scene import Scene
 from evaluate.method import Method
 from evaluate.record import failed_row, run_recorded
-from evaluate.store import StudyRecord, TrialRow, TrialStore
+from evaluate.store import TrialStore
+from evaluate.study_record import StudyRecord
 from evaluate.trial import Trial, prepare
+from evaluate.trial_row import TrialRow
 from evaluate.workers import Execute, Job
 
 SHORTEST_HARD_LIMIT = 1.0

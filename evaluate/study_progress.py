@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from converter.plan import Status
 from evaluate.output import Progress, counted
-from evaluate.store import TrialRow
 from evaluate.study import Study
+from evaluate.trial_row import TrialRow
 
 FIELD = "study"
 """Name of the field that a bar shows behind the time that remains."""

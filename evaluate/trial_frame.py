@@ -15,7 +15,8 @@ import numpy as np
 import polars as pl
 
 from evaluate.statistics import FloatArray
-from evaluate.store import FILE_NAME, StoredTrials, StudyRecord, read_only
+from evaluate.store import FILE_NAME, StoredTrials, read_only
+from evaluate.study_record import StudyRecord
 from pcg import json_text
 from pcg.errors import InputError
 from pcg.files import replacing

@@ -13,7 +13,8 @@ from evaluate.inputs import require_writable
 from evaluate.output import counted, log, print_json, print_line, print_table
 from evaluate.plan_source import plan_name
 from evaluate.record import plan_of
-from evaluate.store import StoredTrials, TrialRow
+from evaluate.store import StoredTrials
+from evaluate.trial_row import TrialRow
 from pcg.errors import InputError
 from planner.verify import verify
 

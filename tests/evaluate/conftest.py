@@ -10,7 +10,9 @@ import pytest
 
 from converter.plan import Plan, plan_document
 from converter.scene import Scene
-from evaluate.store import StudyRecord, TrialRow, TrialStore
+from evaluate.store import TrialStore
+from evaluate.study_record import StudyRecord
+from evaluate.trial_row import TrialRow
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from evaluate.record import failed_row
-from evaluate.store import TrialRow
 from evaluate.trial import Trial
+from evaluate.trial_row import TrialRow
 from evaluate.workers import Failure, Job
 
 TIMES_OUT, CRASHES, RAISES, UNSOLVED = range(4)

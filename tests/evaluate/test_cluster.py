@@ -12,8 +12,9 @@ import pytest
 
 from evaluate.compare import without_times
 from evaluate.specification import read_study
-from evaluate.store import TrialRow, TrialStore
+from evaluate.store import TrialStore
 from evaluate.study import Study, run_study
+from evaluate.trial_row import TrialRow
 from evaluate.workers import Execute, Job, run_tasks
 from pcg.errors import InputError
 

@@ -20,8 +20,9 @@ from converter.formats import write_scene
 from converter.scene import Scene
 from evaluate.compare import without_times
 from evaluate.specification import read_study
-from evaluate.store import FILE_NAME, StoredTrials, TrialRow, TrialStore
+from evaluate.store import FILE_NAME, StoredTrials, TrialStore
 from evaluate.study import run_study
+from evaluate.trial_row import TrialRow
 
 TRIALS = 50
 KILLS = 10

@@ -11,9 +11,10 @@ from evaluate.compare import compare, same_plan, without_times
 from evaluate.merge import Merged, merge
 from evaluate.method import Method
 from evaluate.record import run_recorded
-from evaluate.store import StoredTrials, TrialRow, TrialStore
+from evaluate.store import StoredTrials, TrialStore
 from evaluate.study import Study, run_study
 from evaluate.trial import Trial
+from evaluate.trial_row import TrialRow
 from pcg.errors import InputError
 from planner import Settings
 

@@ -9,8 +9,10 @@ import pytest
 from converter.scene import Scene
 from evaluate.method import method_named
 from evaluate.record import failed_row, plan_of, run_recorded
-from evaluate.store import FILE_NAME, StoredTrials, StudyRecord, TrialRow, TrialStore
+from evaluate.store import FILE_NAME, StoredTrials, TrialStore
+from evaluate.study_record import StudyRecord
 from evaluate.trial import Trial
+from evaluate.trial_row import TrialRow
 from evaluate.workers import Failure
 from pcg.errors import InputError
 from planner import Settings

@@ -11,9 +11,10 @@ import pytest
 
 from converter.scene import Scene
 from evaluate.method import Method, method_named
-from evaluate.store import TrialRow, TrialStore
+from evaluate.store import TrialStore
 from evaluate.study import Study, StudySummary, run_study
 from evaluate.trial_frame import read_trials
+from evaluate.trial_row import TrialRow
 from evaluate.workers import run_tasks
 from planner import Settings
 

@@ -8,10 +8,10 @@ from converter.scene import Scene
 from evaluate.method import Method
 from evaluate.output import progress
 from evaluate.record import failed_row
-from evaluate.store import TrialRow
 from evaluate.study import Study
 from evaluate.study_progress import FIELD, StudyProgress
 from evaluate.trial import Trial
+from evaluate.trial_row import TrialRow
 from evaluate.workers import Failure
 from planner import Settings
 

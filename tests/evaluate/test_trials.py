@@ -14,9 +14,10 @@ from converter.scene import Scene
 from evaluate.cli import app
 from evaluate.method import Method
 from evaluate.record import run_recorded
-from evaluate.store import TrialRow, TrialStore
+from evaluate.store import TrialStore
 from evaluate.study import Study, run_study
 from evaluate.trial import Trial
+from evaluate.trial_row import TrialRow
 from planner import Settings
 
 Run = Callable[..., Result]

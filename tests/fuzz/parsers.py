@@ -35,8 +35,10 @@ from evaluate.published import read_times
 from evaluate.record import plan_of
 from evaluate.references import Reference
 from evaluate.specification import read_study
-from evaluate.store import FILE_NAME, StoredTrials, StudyRecord, TrialRow, TrialStore
+from evaluate.store import FILE_NAME, StoredTrials, TrialStore
+from evaluate.study_record import StudyRecord
 from evaluate.trial_frame import read_trials, write_parquet
+from evaluate.trial_row import TrialRow
 from pcg.agents import read_agents
 from pcg.errors import InputError
 from pcg.frozen import read_frozen
