@@ -20,7 +20,8 @@ and `{time_limit}` [s]. Of a program that fails the end of its stderr is quoted.
 
 The time that counts is the wall time of the process, its start included. A program that is not done by the time limit
 and a moment more is killed with all that it has started, and the trial is a `timeout`. One that fails, or whose answer
-is no such document, makes the trial an `error`. Its plans are verified like all others.
+is no such document, makes the trial an `error`; so does one that writes any file of more than 16 MiB. Its plans are
+verified like all others.
 """
 
 import contextlib
