@@ -10,14 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from converter.plan import TOUCH_SLACK
 from converter.shape import FloatArray
-from planner.configuration_space import contact_border
-from planner.kernel import points_free
 from planner.lgp_motion import after
 from planner.logic import Skeleton, Surface
 from planner.motion import motion_planner
-from planner.problem import Configuration, Problem
+from planner.problem import Problem
 from planner.settings import Settings
 from planner.shortcut import shortcut
 
@@ -47,7 +44,7 @@ def motions_between(
     for k, action in enumerate(skeleton):
         arrived = after(configuration, skeleton, switches, k)
         if action.is_pick:
-            valid = touches(problem, arrived, action.index)
+            valid = problem.touches(arrived, action.index)
             space = problem.agent_space(configuration)
         else:
             valid = action.surface is not Surface.GOAL or problem.scene.goal.contains(arrived.objects[action.index])
@@ -64,11 +61,3 @@ def motions_between(
         motions.append(shortcut(found.path, space, settings.shortcut_rounds, rng))
         configuration = arrived
     return motions
-
-
-def touches(problem: Problem, configuration: Configuration, index: int) -> bool:
-    """Whether agent and object are no further apart than the tolerance; whether they overlap is a matter of motion."""
-    body, scene = problem.scene.objects[index], problem.scene
-    near = contact_border(scene.agent.radius + scene.tolerance + TOUCH_SLACK, body)
-    offset = configuration.agent - configuration.objects[index]
-    return not points_free(offset[None], *near.arrays)[0]

@@ -67,15 +67,13 @@ def _by_mbts(
 
 def _exact_steps(problem: Problem, configuration: Configuration, segments: Sequence[Segment]) -> list[PickPlace]:
     """The pick-places of moves and carries in turn; none if one of them is not free or the goal is missed."""
-    from planner.mbts_rrt import touches  # noqa: PLC0415  # as above
-
     names, steps = problem.scene.object_names, []
     for move, carry in zip(segments[::2], segments[1::2], strict=True):
         index = names.index(str(carry.object))
         start = configuration.objects[index]
         grasped = Configuration(carry.path[0], configuration.objects)
         free = (
-            touches(problem, grasped, index)
+            problem.touches(grasped, index)
             and problem.agent_space(configuration).path_free(move.path)
             and problem.carry_space(configuration, index, carry.path[0] - start).path_free(carry.path)
         )

@@ -12,6 +12,7 @@ from typing import Self
 
 import numpy as np
 
+from converter.plan import TOUCH_SLACK
 from converter.scene import Body, Scene
 from converter.shape import FloatArray, frozen_array
 from pcg.errors import InputError
@@ -20,8 +21,10 @@ from planner.configuration_space import (
     ObstacleSet,
     agent_obstacles,
     body_obstacles,
+    contact_border,
     sight_obstacles,
 )
+from planner.kernel import points_free
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +101,13 @@ class Problem:
         goal, (lower, upper) = self.scene.goal, self.scene.bounds
         nearest = np.clip(goal.position, lower, upper)
         return goal.contains(nearest)
+
+    def touches(self, configuration: Configuration, index: int) -> bool:
+        """Whether agent and object `index` are near enough for a grasp; whether they overlap is a matter of motion."""
+        body, scene = self.scene.objects[index], self.scene
+        near = contact_border(scene.agent.radius + scene.tolerance + TOUCH_SLACK, body)
+        offset = configuration.agent - configuration.objects[index]
+        return not points_free(offset[None], *near.arrays)[0]
 
     def distance_to_goal(self, configuration: Configuration) -> float:
         """How far the goal-object's centre is from the goal [m], as the crow flies."""

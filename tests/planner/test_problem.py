@@ -43,6 +43,17 @@ def test_at_goal_counts_the_border(x: float, *, inside: bool):
     assert problem.at_goal(problem.initial.with_object(0, np.array([x, 1.325]))) == inside
 
 
+@pytest.mark.parametrize(
+    ("gap", "near"), [(-0.1, True), (0.0, True), (1e-3 + 0.9e-6, True), (1e-3 + 1.1e-6, False), (0.1, False)]
+)
+def test_touching_is_a_matter_of_the_gap(gap: float, *, near: bool):
+    """Up to the tolerance, and the slack that a plan may have beside it, the agent can grasp; of each object by itself."""
+    problem = Problem(room(objects=(OBJ, OTHER), tolerance=1e-3))
+    beside = Configuration(np.array([1.0 - 0.1 - problem.scene.agent.radius - gap, 0.0]), problem.initial.objects)
+    assert problem.touches(beside, 0) == near
+    assert not problem.touches(beside, 1)
+
+
 def test_agent_space_follows_the_objects():
     """Objects are obstacles where the configuration has them; a held one is none."""
     problem = Problem(room(objects=(OBJ, OTHER)))
