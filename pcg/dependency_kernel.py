@@ -7,7 +7,8 @@ import numpy as np
 from numba import njit
 
 from pcg.arrays import ByteArray, Int16Array, Int32Array
-from pcg.solver_kernel import SOLVED, fewest_pushes, make_board, start_of
+from pcg.push_search import fewest_pushes
+from pcg.solver_kernel import SOLVED, make_board, start_of
 
 
 @njit(cache=True)

@@ -11,8 +11,9 @@ from pcg.arrays import ByteArray, Int16Array, Int32Array, IntArray
 from pcg.dependency_kernel import depends
 from pcg.frozen import OPEN
 from pcg.level import Tile, TileArray
+from pcg.push_search import fewest_pushes
 from pcg.region_kernel import count_regions, fill, make_scratch, parts_around
-from pcg.solver_kernel import LIMIT, SOLVED, fewest_pushes, make_board
+from pcg.solver_kernel import LIMIT, SOLVED, make_board
 
 FLOOR, WALL, PLAYER, CRATE, TARGET, CRATE_ON_TARGET, PLAYER_ON_TARGET = (int(tile) for tile in Tile)
 _OPEN = OPEN

@@ -1,7 +1,7 @@
 """An exact Sokoban solver: its solutions have the least number of pushes, or the least number of moves.
 
 Without a named goal crate all crates are alike. With one, it has to be the crate on the first target in reading order.
-Levels may have more crates than targets. The search itself is compiled: `pcg.solver_kernel` says how it works.
+Levels may have more crates than targets. The searches are compiled: `pcg.push_search` and `pcg.move_search`.
 """
 
 from dataclasses import dataclass
@@ -91,6 +91,7 @@ def solve(
         ValueError: the level has not exactly one player, has no target, or `goal_crate` is no crate.
     """
     # Numba takes a second to load: reading and writing levels should not wait for it.
+    from pcg import move_search, push_search  # noqa: PLC0415  # see above
     from pcg import solver_kernel as kernel  # noqa: PLC0415  # see above
 
     goal_crate = level.goal_crate if goal_crate is None else goal_crate
@@ -104,7 +105,7 @@ def solve(
     width = level.shape[1] + 2
     wall = np.pad(level.is_wall, 1, constant_values=True).astype(np.uint8).ravel()
     targets = np.array([_number(cell, width) for cell in level.targets], dtype=np.int32)
-    search = {Objective.PUSHES: kernel.fewest_pushes, Objective.MOVES: kernel.fewest_moves}[objective]
+    search = {Objective.PUSHES: push_search.fewest_pushes, Objective.MOVES: move_search.fewest_moves}[objective]
     outcome, states, path = search(
         kernel.make_board(wall, width, targets),
         _number(player, width),

@@ -18,8 +18,9 @@ from numba import njit
 from pcg.arrays import ByteArray, Int32Array, IntArray, WordArray
 from pcg.dependency_kernel import depends
 from pcg.level import Tile, TileArray
+from pcg.push_search import fewest_pushes
 from pcg.region_kernel import Scratch, count_regions, fill, make_scratch, parts_around, visit
-from pcg.solver_kernel import SOLVED, fewest_pushes, make_board, start_of
+from pcg.solver_kernel import SOLVED, make_board, start_of
 
 FLOOR, WALL, PLAYER, CRATE, TARGET = (int(tile) for tile in list(Tile)[:5])
 

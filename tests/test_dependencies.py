@@ -45,6 +45,8 @@ HOMES = {
     "numba": {
         "pcg/dependency_kernel.py",
         "pcg/episode_kernel.py",
+        "pcg/move_search.py",
+        "pcg/push_search.py",
         "pcg/random_kernel.py",
         "pcg/region_kernel.py",
         "pcg/reward.py",

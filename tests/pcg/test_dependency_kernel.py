@@ -6,8 +6,9 @@ import pytest
 from pcg.dependency import has_dependency
 from pcg.dependency_kernel import depends
 from pcg.level import Level
+from pcg.push_search import fewest_pushes
 from pcg.solver import solve
-from pcg.solver_kernel import fewest_pushes, make_board
+from pcg.solver_kernel import make_board
 from pcg.xsb import parse_levels
 from tests.pcg.maps import solvable
 
