@@ -60,7 +60,8 @@ def replay(scene: Scene, plan: Plan) -> list[Step]:
         carried = None if segment.object is None else names.index(segment.object)
         offset = np.zeros(2) if carried is None else positions[carried] - segment.path[0]
         steps.append(Step(segment, positions, carried, frozen_array(offset, (2,))))
-        positions = frozen_array(steps[-1].end_positions, (None, 2))
+        if carried is not None:
+            positions = frozen_array(steps[-1].end_positions, (None, 2))
     return steps
 
 

@@ -54,6 +54,7 @@ class SokobanVectorEnvironment(VectorEnv[Observation, IntArray, npt.NDArray[Any]
         self.episodes = Episodes(self.settings, num_envs, archive)
         self._request = request
         self._tasks = tasks or TaskDistribution()
+        self._options: dict[str, Any] = {}
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
