@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-_STRAIGHT = 1e-9
+_STRAIGHT = 1e-10
 """Largest distance [m] of a vertex inside the line through its neighbours that counts as lying on it: rounding alone
 bends a straight side inwards when a polygon is turned or shortened."""
 
