@@ -275,10 +275,15 @@ def _require_version(connection: sqlite3.Connection, path: Path) -> None:
 
 
 def _require_no_links(folder: Path, names: Sequence[str]) -> None:
-    """Refuses links in place of our files: whoever made the folder could point them at files of its reader."""
-    for name in names:
-        if (folder / name).is_symlink():
-            raise InputError(str(folder / name), "a symbolic link, which is not followed for writing")
+    """Refuses links and pipes in place of our files.
+
+    Whoever made the folder could point links at files of its reader, and opening a pipe waits for ever.
+    """
+    for path in (folder / name for name in names):
+        if path.is_symlink():
+            raise InputError(str(path), "a symbolic link, which is not followed for writing")
+        if path.is_fifo():
+            raise InputError(str(path), "a named pipe, which is not written to")
 
 
 def _locked(folder: Path) -> IO[str]:

@@ -19,7 +19,7 @@ MAX_LINES, MAX_LINE_BYTES = 1_000_000, 1_000_000
 def read_bytes(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
     """What a file holds.
 
-    No more than that is ever read, so pipes and devices may be read too.
+    No more than that is ever read, so a shell's pipes and devices may be read too.
 
     Raises:
         InputError: the file is missing, is a folder, may not be read or is larger.
@@ -81,6 +81,9 @@ def _line(data: bytes, where: str, encoding: str) -> str:
 @contextlib.contextmanager
 def _reading(path: Path) -> Iterator[None]:
     try:
+        # Opening it would wait for ever for somebody who writes; pipes of a shell have no path in the end.
+        if Path(os.path.realpath(path)).is_fifo():
+            raise InputError(str(path), "cannot be read: a named pipe")
         yield
     except FileNotFoundError:
         raise InputError(str(path), "no such file") from None

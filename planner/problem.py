@@ -26,6 +26,9 @@ from planner.configuration_space import (
 )
 from planner.kernel import points_free
 
+MAX_PAIRS = 500_000
+"""Pairs of an object and another body; preparing for so many takes about ten seconds."""
+
 
 @dataclass(frozen=True, eq=False)
 class Configuration:
@@ -65,10 +68,11 @@ class Problem:
         sight_objects: How each object blocks lines of sight, relative to its own position.
 
     Raises:
-        InputError: bodies overlap at the start, or one is out of bounds.
+        InputError: bodies overlap at the start, one is out of bounds, or there are too many of them.
     """
 
     def __init__(self, scene: Scene) -> None:
+        _require_tractable(scene)
         self.scene = scene
         self.n_objects = len(scene.objects)
         self.goal_index = scene.object_names.index(scene.goal.object)
@@ -181,6 +185,13 @@ def once_a_shape(obstacles: RelativeObstacles) -> RelativeObstacles:
 
 def _fixed(walls: Sequence[Body], obstacles: RelativeObstacles) -> ObstacleSet:
     return ObstacleSet.union([obstacles(wall).moved(wall.position[:2]) for wall in walls]).with_free_corners()
+
+
+def _require_tractable(scene: Scene) -> None:
+    pairs = len(scene.objects) * (len(scene.objects) + len(scene.walls))
+    if pairs > MAX_PAIRS:
+        problem = f"{pairs} pairs of an object and another body are too many to plan with; at most {MAX_PAIRS} will do"
+        raise InputError(scene.name, problem)
 
 
 def _require_valid_start(scene: Scene, for_agent: RelativeObstacles, for_objects: Sequence[RelativeObstacles]) -> None:

@@ -117,7 +117,7 @@ def require_refusal(result: Result) -> None:
 
 @pytest.mark.parametrize("command", FILE_COMMANDS)
 def test_bad_files_are_refused_by_every_command(command: str, run: Run, folder: Path):
-    """Missing, empty, binary, a folder instead of a file and the other way round, a device, a name too long."""
+    """Missing, empty, binary, a folder instead of a file and the other way round, a device, a pipe, a name too long."""
     arguments, suffix = FILE_COMMANDS[command]
     names = [f"{name}{suffix}" for name in CONTENTS]
     for name, content in zip(names, CONTENTS.values(), strict=True):
@@ -125,7 +125,8 @@ def test_bad_files_are_refused_by_every_command(command: str, run: Run, folder: 
             (folder / name).write_bytes(content)
     (folder / f"folder{suffix}").mkdir()
     (folder / f"link{suffix}").symlink_to("/dev/zero")
-    for name in (*names, f"folder{suffix}", f"link{suffix}", "x" * 300 + suffix, f"\x1b[31m{suffix}"):
+    os.mkfifo(folder / f"pipe{suffix}")
+    for name in (*names, f"folder{suffix}", f"link{suffix}", f"pipe{suffix}", "x" * 300 + suffix, f"\x1b[31m{suffix}"):
         require_refusal(run(*(argument.format(name) for argument in arguments)))
 
 
@@ -248,7 +249,23 @@ def limited() -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S))
 
 
+def crowd() -> bytes:
+    """Two thousand objects, of which none overlaps another: millions of pairs."""
+    small = "size: [0.01, 0.01, 0.1]}}"
+    places = ((i / 100, j / 100) for i in range(0, 100, 2) for j in range(0, 80, 2))
+    objects = "".join(f"- {{name: o{i}, position: [{x}, {y}, 0.05], {small}\n" for i, (x, y) in enumerate(places))
+    return f"""\
+format: 1
+bounds: [[-2, -2], [2, 2]]
+tolerance: 0.001
+agent: {{position: [0, -1], radius: 0.1}}
+goal: {{object: o0, position: [-1, 0], size: [1, 1]}}
+objects:
+{objects}""".replace("}}", "}").encode()
+
+
 HUGE = {
+    "crowd": ("a.yaml", crowd, ["solve", "a.yaml", "--out", "o"]),
     "levels": ("a.xsb", lambda: b"#\n" * 9_000_000, ["levels", "a.xsb"]),
     "scene": ("a.yaml", lambda: b"a: [" + b"0," * 3_900_000 + b"0]", ["convert", "a.yaml", "--out", "o"]),
     "rai": ("a.g", lambda: b"a { b:[" + b"0 " * 3_900_000 + b"] }", ["convert", "a.g", "--out", "o"]),

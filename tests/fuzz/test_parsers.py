@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 import re
 import sqlite3
 import tempfile
@@ -253,6 +254,16 @@ def test_links_in_a_folder_are_not_written_through(name: str, tmp_path: Path):
     with pytest.raises(InputError, match="symbolic link"):
         TrialStore(tmp_path / "study")
     assert victim.read_text() == "kept"
+
+
+@pytest.mark.parametrize("name", [".lock", FILE_NAME, f"{FILE_NAME}-wal"])
+def test_pipes_in_a_folder_are_not_waited_for(name: str, tmp_path: Path):
+    """Opening one would never end."""
+    write_store(tmp_path / "study", trial_row())
+    (tmp_path / "study" / name).unlink(missing_ok=True)
+    os.mkfifo(tmp_path / "study" / name)
+    with pytest.raises(InputError, match="named pipe"):
+        TrialStore(tmp_path / "study")
 
 
 def test_what_was_computed_survives_refusal(tmp_path: Path):

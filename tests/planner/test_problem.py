@@ -15,6 +15,17 @@ from tests.planner.scenes import body, room, vectors, wall
 OBJ, OTHER = body("obj", 1.0, 0.0), body("other", -1.0, 0.0)
 
 
+def test_too_many_pairs_of_bodies_are_refused(monkeypatch: pytest.MonkeyPatch):
+    """Nobody would wait for what grows with the square of the objects."""
+    scene = room(wall(0, 1, 0.1, 0.1), objects=(body("obj", -1, 1), body("other", 1, -1)), agent=(0, -1))
+    pairs = 2 * (2 + len(scene.walls))
+    monkeypatch.setattr("planner.problem.MAX_PAIRS", pairs)
+    Problem(scene)
+    monkeypatch.setattr("planner.problem.MAX_PAIRS", pairs - 1)
+    with pytest.raises(InputError, match=rf"{pairs} pairs .* too many .*; at most {pairs - 1}"):
+        Problem(scene)
+
+
 def test_initial_configuration_is_the_scene():
     """Positions come from the scene, objects in its order; the goal-object is found by name."""
     scene = room(objects=(OTHER, OBJ), agent=(0.5, 1.0))
