@@ -5,7 +5,7 @@ Figures are made without a window system and without global state; `evaluate.plo
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import polars as pl
@@ -20,6 +20,9 @@ from evaluate.statistics import FloatArray, solved_within, wilson_interval
 from evaluate.tables_success import success_counts
 from evaluate.trial_frame import names_in, planning_times
 from pcg.printable import one_line, printable
+
+MAX_METHODS = 16
+"""Methods in a plot: as many as two rounds of colours tell apart."""
 
 MAX_BOXED_SCENES = 24
 """Scenes in the box plots; of more, those with the longest times are shown."""
@@ -58,11 +61,23 @@ class Plot:
 
 def plots_of(frame: pl.DataFrame, groupings: Sequence[Grouping]) -> list[Plot]:
     """All plots of the trials (`evaluate.trial_frame.read_trials`); those without any solved run are left out."""
-    plots = []
+    best = _best_methods(frame)
+    left_out = frame["method"].n_unique() - len(best)
+    frame, plots = frame.filter(pl.col("method").is_in(best)), []
     if frame["solved"].any():
         plots += [times_plot(frame), curves_plot(frame)]
-    difficulty = [grouping for grouping in groupings if 1 < len(grouping.groups) <= MAX_GROUPS]
-    return [*plots, success_plot(frame, difficulty)] if difficulty else plots
+    if difficulty := [grouping for grouping in groupings if 1 < len(grouping.groups) <= MAX_GROUPS]:
+        plots.append(success_plot(frame, difficulty))
+    more = f" {left_out} methods are left out, which solve fewer runs or take longer." if left_out else ""
+    return [replace(plot, note=plot.note + more) for plot in plots]
+
+
+def _best_methods(frame: pl.DataFrame) -> list[str]:
+    """The methods to be plotted: those that solve most runs, and of these the fastest."""
+    solved = pl.col("solved")
+    found = frame.group_by("method", maintain_order=True).agg(solved.mean(), pl.col("time_s").filter(solved).mean())
+    ranked = found.sort("solved", "time_s", descending=[True, False], nulls_last=True, maintain_order=True)
+    return ranked["method"][:MAX_METHODS].to_list()
 
 
 def times_plot(frame: pl.DataFrame) -> Plot:

@@ -1,6 +1,7 @@
 """Tables over all scenes: what each method achieves, and how it compares with each other one."""
 
 import math
+from collections.abc import Callable
 from functools import partial
 from itertools import combinations
 from typing import Any
@@ -24,8 +25,8 @@ from evaluate.statistics import (
 from evaluate.table import BLANK, Entry, Table
 from evaluate.trial_frame import names_in, planning_times
 
-LARGE = 5_000
-"""Runs of a method from which on fewer bootstrap samples will do."""
+LARGE, MANY = 5_000, 20
+"""Runs of a method, and methods, from which on fewer bootstrap samples have to do."""
 
 SAMPLES_OF_LARGE = 200
 
@@ -41,8 +42,9 @@ def methods_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table:
         rng: Source of the bootstrap samples.
     """
     times, limit = planning_times(frame), time_limit(frame)
+    interval = partial(_interval_entry, rng=rng, resamples=_resamples(times))
     totals = {row["method"]: row for row in _totals(frame).iter_rows(named=True)}
-    rows = (_method_row(totals[method], times[method], limit, rng) for method in names_in(frame, "method"))
+    rows = (_method_row(totals[method], times[method], limit, interval) for method in names_in(frame, "method"))
     columns = (
         "method",
         "solved",
@@ -75,7 +77,9 @@ def _totals(frame: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _method_row(total: dict[str, Any], times: FloatArray, limit: float, rng: np.random.Generator) -> tuple[Entry, ...]:
+def _method_row(
+    total: dict[str, Any], times: FloatArray, limit: float, interval: Callable[[FloatArray, Statistic], Entry]
+) -> tuple[Entry, ...]:
     """The entries of a method, from its row of `_totals` and its `times` (runs, scenes) [s]."""
     low, high = wilson_interval(total["n_solved"], total["len"])
     rate = total["n_solved"] / total["len"]
@@ -84,9 +88,9 @@ def _method_row(total: dict[str, Any], times: FloatArray, limit: float, rng: np.
         Entry(f"{total['n_solved']}/{total['len']}", value=rate),
         Entry(f"{percent(rate)} ({100 * low:.0f} to {100 * high:.0f})", value=rate),
         Entry(f"{total['n_accepted']}", value=total["n_accepted"]) if total["n_asked"] else BLANK,
-        _interval_entry(times, mean_time, rng),
-        _interval_entry(times, median_time, rng),
-        _interval_entry(times, partial(par2, limit=limit), rng),
+        interval(times, mean_time),
+        interval(times, median_time),
+        interval(times, partial(par2, limit=limit)),
         _plain_entry(total["pick_places"]),
         _plain_entry(total["path_length_m"]),
     )
@@ -95,9 +99,9 @@ def _method_row(total: dict[str, Any], times: FloatArray, limit: float, rng: np.
 def comparison_table(frame: pl.DataFrame, rng: np.random.Generator) -> Table | None:
     """Every pair of methods on the same scenes and seeds; None if no two methods share any."""
     times, limit = planning_times(frame), time_limit(frame)
-    methods, rows = names_in(frame, "method"), []
+    methods, resamples, rows = names_in(frame, "method"), _resamples(times), []
     for first, second in combinations(methods[:MAX_COMPARED], 2):
-        found = compare(times[first], times[second], limit, rng, resamples=_resamples(times[first]))
+        found = compare(times[first], times[second], limit, rng, resamples=resamples)
         if found.pairs:
             rows.append(_comparison_row(f"{first} vs. {second}", found))
     if not rows:
@@ -141,7 +145,7 @@ def percent(share: float) -> str:
     return f"{value:.0f}%" if value in {0.0, 100.0} else f"{value:.1f}%"
 
 
-def _interval_entry(matrix: FloatArray, statistic: Statistic, rng: np.random.Generator) -> Entry:
+def _interval_entry(matrix: FloatArray, statistic: Statistic, rng: np.random.Generator, resamples: int) -> Entry:
     value = statistic(matrix)
     if math.isnan(value):
         return Entry("-")
@@ -150,7 +154,7 @@ def _interval_entry(matrix: FloatArray, statistic: Statistic, rng: np.random.Gen
         statistic,
         rng,
         resampled="scenes" if matrix.shape[1] > 1 else "runs",
-        resamples=_resamples(matrix),
+        resamples=resamples,
     )
     text = f"{_seconds(value)} ({_seconds(low)} to {_seconds(high)})"
     return Entry(text, value=value if math.isfinite(value) else None)
@@ -160,8 +164,9 @@ def _unit(times: dict[str, FloatArray]) -> str:
     return "scenes" if next(iter(times.values())).shape[1] > 1 else "runs"
 
 
-def _resamples(matrix: FloatArray) -> int:
-    return RESAMPLES if matrix.size < LARGE else SAMPLES_OF_LARGE
+def _resamples(times: dict[str, FloatArray]) -> int:
+    is_large = next(iter(times.values())).size >= LARGE or len(times) >= MANY
+    return SAMPLES_OF_LARGE if is_large else RESAMPLES
 
 
 def _seconds(value: float) -> str:

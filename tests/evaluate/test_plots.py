@@ -2,14 +2,16 @@
 
 import itertools
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 import pytest
 from matplotlib.figure import Figure
 
 from evaluate.plot_style import COLUMN_WIDTH, FORMATS, figure_bytes, inline_svg, label_logarithmic, paper_style
-from evaluate.plots import CURVE_POINTS, curves_plot, plots_of, times_plot
+from evaluate.plots import CURVE_POINTS, MAX_METHODS, curves_plot, plots_of, times_plot
 from evaluate.scene_groups import Grouping
 from evaluate.trial_frame import read_trials
 
@@ -32,6 +34,16 @@ def test_plots_without_solved_runs(two_methods: Path):
     assert [plot.name for plot in plots_of(frame, [GROUPING])] == ["times", "solved-within", "success"]
     unsolved = frame.filter(~pl.col("solved"))
     assert [plot.name for plot in plots_of(unsolved, [GROUPING])] == ["success"]
+
+
+def test_the_best_of_many_methods_are_plotted(make_study: Callable[..., Path], make_run: Callable[..., Any]):
+    """Of a sweep the methods that solve most, and of these the fastest, are shown in their order; the note counts on."""
+    solved = [make_run("wall", f"m{i:02}", 0, 1.0 + i) for i in range(MAX_METHODS + 2)]
+    frame = read_trials(make_study([make_run("wall", "none", 0, None), *solved]))
+    boxes, curves = plots_of(frame, [])
+    assert [line.get_label() for line in curves.figure.axes[0].lines] == [f"m{i:02}" for i in range(MAX_METHODS)]
+    for plot in (boxes, curves):
+        assert plot.note.endswith(" 3 methods are left out, which solve fewer runs or take longer.")
 
 
 def test_boxes_hold_solved_runs_without_subgoal_time(two_methods: Path):

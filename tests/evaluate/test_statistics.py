@@ -91,8 +91,10 @@ def test_without_runs_there_is_no_number():
 
 
 def test_median_of_mostly_unsolved_runs_is_infinite():
-    """Half of the runs or more without a plan leave no finite median, whatever the others took."""
+    """More than half of the runs without a plan leave no finite median, whatever the others took; half of them do."""
     assert median_time(np.array([[1.0], [np.inf], [np.inf]])) == math.inf
+    assert median_time(np.array([[np.inf], [1.0]])) == 1.0
+    assert median_time(np.array([[4.0, np.nan], [2.0, 1.0]])) == 2.0
 
 
 def test_bootstrap_of_equal_values_has_no_width():
