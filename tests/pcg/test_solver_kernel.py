@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pcg.solver_kernel import _slot
+from pcg.solver_kernel import slot_of
 
 STATE = ([20, 30], 20, 25)
 """Crates, goal crate and player."""
@@ -29,7 +29,7 @@ def test_states_in_one_slot_are_told_apart(other: tuple[list[int], int, int]):
 
     def slot(crates: list[int], goal: int, player: int) -> int:
         states, goals, players = (np.array([part], dtype=np.int16) for part in STATE)
-        return int(_slot(table, states, goals, players, np.array(crates, dtype=np.int16), goal, player))
+        return int(slot_of(table, states, goals, players, np.array(crates, dtype=np.int16), goal, player))
 
     assert slot(*STATE) != 7
     assert slot(*other) == 7
