@@ -168,6 +168,20 @@ def test_fewest_moves_before_fewest_pushes(text: str, moves: int, pushes: int):
     assert (solution.moves, solution.pushes) == (moves, pushes)
 
 
+@pytest.mark.parametrize(
+    ("text", "moves", "pushes"),
+    [
+        ("########\n#$   # #\n#  #   #\n# #  $ #\n# @.   #\n########", 10, 3),
+        ("########\n##@ .  #\n##$    #\n#     ##\n#      #\n# #    #\n########", 11, 7),
+        ("########\n#   $# #\n###    #\n##   $ #\n# . @  #\n#      #\n########", 9, 4),
+    ],
+)
+def test_a_state_that_is_reached_again_by_fewer_moves(text: str, moves: int, pushes: int):
+    """The search finds a state on the solution by a longer way first."""
+    solution = solve(parse_levels(text, "test.xsb")[0], objective=Objective.MOVES)
+    assert (solution.moves, solution.pushes) == (moves, pushes)
+
+
 def test_each_objective_has_its_own_solution():
     """Here two pushes take ten moves and three take eight."""
     (level,) = parse_levels("######\n# @. #\n# $  #\n# $  #\n######", "test.xsb")
