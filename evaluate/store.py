@@ -85,7 +85,7 @@ class StoredTrials:
         self._path = folder / FILE_NAME
         if not self._path.is_file():
             raise InputError(str(folder), f"no study: there is no file {FILE_NAME}")
-        _require_no_links(folder, _BESIDE)
+        _require_plain_files(folder, _BESIDE)
         with self._explained():
             self._connection = read_only(self._path)
             try:
@@ -274,7 +274,7 @@ def _require_version(connection: sqlite3.Connection, path: Path) -> None:
         raise InputError(str(path), f"a database of version {version}, allowed is {VERSION}")
 
 
-def _require_no_links(folder: Path, names: Sequence[str]) -> None:
+def _require_plain_files(folder: Path, names: Sequence[str]) -> None:
     """Refuses links and pipes in place of our files.
 
     Whoever made the folder could point links at files of its reader, and opening a pipe waits for ever.
@@ -289,7 +289,7 @@ def _require_no_links(folder: Path, names: Sequence[str]) -> None:
 def _locked(folder: Path) -> IO[str]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        _require_no_links(folder, (LOCK_NAME, FILE_NAME, *_BESIDE))
+        _require_plain_files(folder, (LOCK_NAME, FILE_NAME, *_BESIDE))
         file = (folder / LOCK_NAME).open("w")
     except OSError as error:
         raise InputError(str(folder), f"cannot be written: {error.strerror}") from None

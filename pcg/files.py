@@ -1,6 +1,7 @@
 """Reading and writing files: clear errors for what cannot be read, no half-written files."""
 
 import contextlib
+import errno
 import itertools
 import os
 import tempfile
@@ -11,6 +12,9 @@ from pcg.errors import InputError
 
 MAX_BYTES = 20_000_000
 """Of a file, unless its reader says otherwise."""
+
+_NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
+"""What a full or broken disk says, without saying of which file."""
 
 MAX_LINES, MAX_LINE_BYTES = 1_000_000, 1_000_000
 """Lines, and bytes of a line, where lines are read one by one."""
@@ -113,7 +117,7 @@ def replacing(path: Path) -> Iterator[Path]:
     Missing folders are made. If the block raises, `path` is left as it was.
 
     Raises:
-        InputError: the folder cannot be made or written to, or `path` is a folder.
+        InputError: the folder cannot be made or written to, `path` is a folder, or the disk is full.
     """
     with _writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -128,6 +132,10 @@ def replacing(path: Path) -> Iterator[Path]:
         temporary.chmod(0o666 & ~umask)
         with _writing(path):
             temporary.replace(path)
+    except OSError as error:
+        if error.errno not in _NO_ROOM:
+            raise
+        raise InputError(str(path), f"cannot be written: {error.strerror}") from None
     finally:
         temporary.unlink(missing_ok=True)
 

@@ -1,5 +1,7 @@
 """Files: read with clear errors, replaced in one step."""
 
+import errno
+import os
 import stat
 from pathlib import Path
 
@@ -78,3 +80,27 @@ def test_what_cannot_be_written_is_named(tmp_path: Path):
     with pytest.raises(InputError, match=f"^{tmp_path}/a\\.txt: cannot be written: "):
         write_text(tmp_path / "a.txt", "text")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.txt", "file"]
+
+
+def test_a_full_disk_is_said_of_the_file(tmp_path: Path):
+    """The system's error names none; other errors of a block are left as they are."""
+    with (
+        pytest.raises(InputError, match=r"a[.]txt: cannot be written: No space left on device"),
+        replacing(tmp_path / "a.txt"),
+    ):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    with pytest.raises(PermissionError), replacing(tmp_path / "a.txt"):
+        raise PermissionError
+    assert not list(tmp_path.iterdir())
+
+
+def test_named_pipes_are_not_waited_for(tmp_path: Path):
+    """Those of a shell have no name in the end, and are read."""
+    os.mkfifo(tmp_path / "a.txt")
+    with pytest.raises(InputError, match=r"a[.]txt: cannot be read: a named pipe"):
+        read_text(tmp_path / "a.txt")
+    reading, writing = os.pipe()
+    os.write(writing, b"text")
+    os.close(writing)
+    assert read_text(Path(f"/dev/fd/{reading}")) == "text"
+    os.close(reading)
