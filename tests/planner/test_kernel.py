@@ -197,11 +197,25 @@ def test_bounds_are_closed():
         assert points_free_within(beyond, bounds, *obstacles.arrays).tolist() == [False] * 4
 
 
+@pytest.mark.parametrize("x", [-5.0, 5.0])
+@pytest.mark.parametrize("y", [-7.0, 7.0])
+def test_obstacles_in_every_quadrant_are_met(x: float, y: float):
+    """Wherever an obstacle lies, what crosses it is not free, and what passes any of its sides is."""
+    centre, offsets = np.array([x, y]), np.array([[-2.0, 0.0], [2.0, 0.0], [0.0, -2.0], [0.0, 2.0]])
+    arrays = ObstacleSet.of([SQUARE + centre], [0.5]).arrays
+    middle, around = np.tile(centre, (4, 1)), offsets + centre
+    beside = around + offsets[:, ::-1]
+    assert segments_free(around, middle, *arrays).tolist() == [False] * 4
+    assert segments_free(middle, around, *arrays).tolist() == [False] * 4
+    assert segments_free(around, beside, *arrays).tolist() == [True] * 4
+    assert points_free(np.vstack([middle[:1], around]), *arrays).tolist() == [False, *[True] * 4]
+
+
 def test_joined_sets_are_their_members_moved():
     """A set joined with another one, translated, has the arrays of all members where they are then."""
-    triangle, by = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]), np.array([10.0, -20.0])
-    one, three = [triangle], [SQUARE, triangle, SQUARE[:1]]
-    found = joined(*ObstacleSet.of(one, [0.5]).arrays, *ObstacleSet.of(three, [-0.1, 0.2, 0.3]).arrays, by)
-    expected = ObstacleSet.of([*one, *(polygon + by for polygon in three)], [0.5, -0.1, 0.2, 0.3])
+    triangle, by = np.array([[0.0, 3.0], [2.0, 3.0], [0.0, 4.0]]), np.array([10.0, -20.0])
+    two, three = [triangle, SQUARE], [SQUARE, triangle, SQUARE[:1]]
+    found = joined(*ObstacleSet.of(two, [0.5, 0.0]).arrays, *ObstacleSet.of(three, [-0.1, 0.2, 0.3]).arrays, by)
+    expected = ObstacleSet.of([*two, *(polygon + by for polygon in three)], [0.5, 0.0, -0.1, 0.2, 0.3])
     for array, wanted in zip(found, expected.arrays, strict=True):
         np.testing.assert_allclose(array, wanted, atol=1e-14)
