@@ -134,6 +134,7 @@
     dialog.querySelector("p").textContent = scene.caption;
     dialog.showModal();
     player = ManipuzzlePlayer.mount(stage, [payload]);
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
   });
   dialog.querySelector("header button").addEventListener("click", () => dialog.close());
   dialog.addEventListener("click", (event) => {

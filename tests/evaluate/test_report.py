@@ -151,5 +151,6 @@ def _plays(page: Any) -> None:
     page.wait_for_selector("#player[open] .stage svg")
     assert page.locator("#player h3").inner_text() == "wall"
     assert "2 pick-places" in page.locator("#player p").first.inner_text()
+    page.wait_for_function("Number(document.querySelector('#player input[type=range]').value) > 0")
     page.locator("#player > header button").click()
     assert page.locator("#player .stage > *").count() == 0
