@@ -95,9 +95,8 @@ class ConversionSettings:
             raise InputError("cell", f"{self.cell} m must be more than two edge radii of {preset.block_edge_radius}")
         radius = preset.object_edge_radius
         if not 2 * radius < self.object_size * (1 - self.size_jitter) or self.object_size > self.cell:
-            raise InputError(
-                "object_size", f"{self.object_size} m must fit a cell and exceed two edge radii of {radius}"
-            )
+            problem = f"must fit a cell of {self.cell} m and exceed two edge radii of {radius} m"
+            raise InputError("object_size", f"{self.object_size} m {problem}")
         # Objects that leave the grid keep to the part of a cell that no outer wall covers, so that none overlaps another
         # body. Of all angles, a box is widest at 45 degrees.
         angle = min(self.yaw_jitter, np.pi / 4)

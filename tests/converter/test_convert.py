@@ -287,10 +287,10 @@ def test_a_level_of_too_many_walls_is_refused():
         ({"agent_radius": -1.0}, "agent_radius: -1.0 m must be between"),
         ({"object_size": 0.5}, "object_size: 0.5 m must fit a cell"),
         ({"cell": 0.01, "object_size": 0.01, "preset": "published"}, "cell: 0.01 m must be more than two edge radii"),
-        ({"object_size": 0.04, "preset": "published"}, "object_size: 0.04 m must fit a cell and exceed"),
+        ({"object_size": 0.04, "preset": "published"}, "object_size: 0.04 m must fit a cell of 0.4 m and exceed"),
         (
             {"object_size": 0.1, "size_jitter": 0.7, "preset": "published"},
-            "object_size: 0.1 m must fit a cell and exceed",
+            "object_size: 0.1 m must fit a cell of 0.4 m and exceed",
         ),
         ({"object_height": 0.0}, "object_height: 0.0 m must be between"),
         ({"size_jitter": 1.0}, "size_jitter: 1.0 must be at least 0 and less than 1"),
