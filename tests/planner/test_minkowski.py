@@ -105,3 +105,12 @@ def test_adding_a_point_moves():
     point = np.array([[3.0, -2.0]])
     np.testing.assert_array_equal(minkowski_sum(square, point), square + point)
     np.testing.assert_array_equal(minkowski_sum(point, square), square + point)
+
+
+@pytest.mark.parametrize("left", [0.0, -0.0])
+@pytest.mark.parametrize("right", [0.0, -0.0])
+def test_the_sign_of_zero_does_not_count(left: float, right: float):
+    """An upper side at y = 0 runs to the left, whichever zeros its ends have."""
+    square = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, right], [-1.0, left]])
+    triangle = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]])
+    assert sorted(map(tuple, minkowski_sum(square, triangle))) == [(-1, -1), (-1, 2), (1, 2), (3, -1), (3, 0)]
