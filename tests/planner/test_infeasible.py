@@ -1,5 +1,6 @@
 """Proofs that there is no plan: given where walls forbid it, and never where there is one."""
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -83,9 +84,22 @@ def test_every_exact_method_says_infeasible(method: str):
     assert result.time_s < 30
 
 
+def test_a_seed_fixes_how_far_a_search_gets_before_the_proof(monkeypatch: pytest.MonkeyPatch):
+    """The counters of an infeasible scene are the same on a machine that is a hundred times slower."""
+    scene, settings = divided(0.3, obj=(-1, 1)), Settings(time_limit=1e6)
+    now = time.perf_counter
+    quick = solve(scene, settings, np.random.default_rng(0))
+    monkeypatch.setattr(time, "perf_counter", lambda: 100 * now())
+    slow = solve(scene, settings, np.random.default_rng(0))
+    assert quick.status is slow.status is Status.INFEASIBLE
+    assert quick.counters["expansions"] > 0
+    counted, counted_slowly = ({k: v for k, v in r.counters.items() if not k.endswith("_s")} for r in (quick, slow))
+    assert counted == counted_slowly
+
+
 def test_a_proof_ends_a_search(monkeypatch: pytest.MonkeyPatch):
     """A search without end stops once there is a proof; one that finds a plan keeps it, and no proof changes nothing."""
-    monkeypatch.setattr("planner.infeasible.PATIENCE_S", 0.0)
+    monkeypatch.setattr("planner.infeasible.PATIENCE", 0)
 
     def endless(should_stop: Callable[[], bool]) -> PlanResult:
         while not should_stop():
@@ -100,7 +114,7 @@ def test_a_proof_ends_a_search(monkeypatch: pytest.MonkeyPatch):
 
 def test_a_search_that_is_not_ended_is_judged_afterwards(monkeypatch: pytest.MonkeyPatch):
     """Without `ends_search` a proof does not stop the search, and counts once that has failed by itself."""
-    monkeypatch.setattr("planner.infeasible.PATIENCE_S", 0.0)
+    monkeypatch.setattr("planner.infeasible.PATIENCE", 0)
 
     def stubborn(should_stop: Callable[[], bool]) -> PlanResult:
         assert not should_stop()
