@@ -8,7 +8,7 @@ from pathlib import Path
 from converter.formats import read_scene
 from converter.preset import with_preset, with_tolerance
 from converter.scene import Scene
-from evaluate.names import require_distinct, safe_name
+from evaluate.names import counting_order, require_distinct, safe_name
 from pcg.errors import InputError
 from pcg.level import Level
 from pcg.level_set import LEVELS_FILE, iter_level_set
@@ -33,7 +33,7 @@ def is_level_set(path: Path) -> bool:
 
 
 def expanded(paths: Iterable[Path], suffixes: Sequence[str]) -> Iterator[Path]:
-    """The files that arguments name: a folder stands for the files in it with one of these suffixes, by name.
+    """The files that arguments name: a folder stands for the files in it with one of these suffixes, in counting order.
 
     Raises:
         InputError: a folder holds none.
@@ -42,7 +42,8 @@ def expanded(paths: Iterable[Path], suffixes: Sequence[str]) -> Iterator[Path]:
         if not path.is_dir():
             yield path
             continue
-        found = sorted(file for file in path.iterdir() if file.suffix.lower() in suffixes and file.name[0] != ".")
+        files = (file for file in path.iterdir() if file.suffix.lower() in suffixes and file.name[0] != ".")
+        found = sorted(files, key=lambda file: counting_order(file.name))
         if not found:
             hint = f"; convert this level set first: manipuzzle convert {path} --out DIR" if is_level_set(path) else ""
             raise InputError(

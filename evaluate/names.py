@@ -19,6 +19,13 @@ def safe_name(name: str) -> str:
     return _UNSAFE.sub("_", name).lstrip(".")[:MAX_LENGTH] or "unnamed"
 
 
+def counting_order(name: str) -> tuple[list[str | int], str]:
+    """What to sort names by, so that numbers in them count: `m2-9` before `m2-10` before `m10-1`."""
+    # Text and numbers alternate, so that like meets like.
+    pieces: list[str | int] = [int(piece) if i % 2 else piece for i, piece in enumerate(re.split(r"(\d+)", name))]
+    return pieces, name
+
+
 def require_distinct(names: Sequence[str], what: str, sources: Sequence[str] | None = None) -> None:
     """Makes sure that no two results would be written to one file, on file systems that ignore case too.
 

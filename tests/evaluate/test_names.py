@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evaluate.names import MAX_LENGTH, require_distinct, safe_name
+from evaluate.names import MAX_LENGTH, counting_order, require_distinct, safe_name
 from pcg.errors import InputError
 
 
@@ -37,3 +37,15 @@ def test_equal_names_are_refused():
     require_distinct(["a", "b"], "scenes")
     with pytest.raises(InputError, match=r"^scenes: two inputs would be written as 'B'"):
         require_distinct(["a", "b", "B"], "scenes")
+
+
+def test_numbers_in_names_count():
+    """As people count; names that say the same keep an order of their own."""
+    names = ["m2-9", "m2-10", "m10-1", "m10-1b", "n", "n01", "n1", "n\u0663", "\xb2"]
+    assert sorted(set(names), key=counting_order) == names
+
+
+@given(st.sets(st.text(max_size=8) | st.from_regex(r"[ab]?[0-9]{1,2}[ab]?", fullmatch=True)))
+def test_any_names_have_an_order(names: set[str]):
+    """Digits of any script and none, at either end: the order does not depend on where the names come from."""
+    assert sorted(names, key=counting_order) == sorted(sorted(names), key=counting_order)
