@@ -182,6 +182,20 @@ def test_a_state_that_is_reached_again_by_fewer_moves(text: str, moves: int, pus
     assert (solution.moves, solution.pushes) == (moves, pushes)
 
 
+@pytest.mark.parametrize(
+    ("text", "pushes"),
+    [
+        ("#######\n#.    #\n#  ## #\n#  $ ##\n# $@  #\n# #   #\n#######", 6),
+        ("########\n#     ##\n# ..# ##\n##$$@$ #\n# .    #\n########", 6),
+        ("########\n# $.   #\n#..$#  #\n# @  $ #\n#      #\n########", 9),
+    ],
+)
+def test_a_state_that_is_reached_again_by_fewer_pushes(text: str, pushes: int):
+    """The search finds a state on the solution by more pushes first, which the bound makes look as short."""
+    (level,) = parse_levels(text, "test.xsb")
+    assert solve(level).pushes == plain_solver.fewest_pushes(level) == pushes
+
+
 def test_each_objective_has_its_own_solution():
     """Here two pushes take ten moves and three take eight."""
     (level,) = parse_levels("######\n# @. #\n# $  #\n# $  #\n######", "test.xsb")
