@@ -85,3 +85,22 @@ def test_crossings_of_all_pieces_and_obstacles_are_found(yaw: float):
     found = met(knots, vectors([1.0, 0.0]), vectors([3.0, 0.5]), rho=0.25, yaw=yaw)
     # Besides, each part passes the other one's post at its height.
     assert found == pytest.approx([2.75, 3.25, 3.5, 3.5, 5.0, 5.0, 5.25, 5.75])
+
+
+def test_an_arc_meets_every_line_and_circle_twice(yaw: float):
+    """A box about the centre of the arc, 0.6 wide: its sides moved out lie at 0.45, its corners 0.3 sqrt(2) away."""
+    box = vectors([2.7, 3.7], [3.3, 3.7], [3.3, 4.3], [2.7, 4.3])
+    at_side = np.arccos(0.45 / REACH)
+    at_corner = np.arccos((REACH**2 + 0.18 - 0.15**2) / (2 * REACH * np.sqrt(0.18)))
+    angles = [k * np.pi / 4 + sign * (at_corner if k % 2 else at_side) for k in range(8) for sign in (-1, 1)]
+    expected = sorted(1 + REACH * (angle % (2 * np.pi)) for angle in angles)
+    assert met(TURN, box, rho=0.15, yaw=yaw) == pytest.approx(expected)
+
+
+def test_the_place_of_a_curve_does_not_count(yaw: float):
+    """Far from the origin, where coordinates exceed arc lengths, the same is met."""
+    far = np.array([0.0, 20.0, 30.0, 0.0, 0.0])
+    assert met(UPWARD + far, vectors([21.3, 30.2]), rho=0.5, yaw=yaw) == pytest.approx([2.8, 3.6])
+    half = np.arccos(0.6)
+    expected = [1 + REACH * half, 1 + REACH * (2 * np.pi - half)]
+    assert met(TURN + far, vectors([23.6, 34.0]), rho=0.5, yaw=yaw) == pytest.approx(expected)
