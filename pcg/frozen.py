@@ -13,7 +13,7 @@ The outer wall belongs to the text; floor is a space, or `-` or `_`.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +50,7 @@ class FrozenTiles:
         object.__setattr__(self, "tiles", tiles)
 
     @classmethod
+    @cache
     def none(cls, rows: int, columns: int) -> "FrozenTiles":
         """All cells open."""
         return cls(np.full((rows, columns), OPEN, dtype=np.uint8))

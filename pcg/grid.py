@@ -47,6 +47,8 @@ def shortest_walk(passable: BoolArray, start: Cell, end: Cell) -> str | None:
 
     The same arguments always give the same of several shortest walks.
     """
+    if start == end:
+        return ""
     width = passable.shape[1] + 2
     free = _padded(passable)
     first, last = ((row + 1) * width + column + 1 for row, column in (start, end))
@@ -70,7 +72,9 @@ def shortest_walk(passable: BoolArray, start: Cell, end: Cell) -> str | None:
 
 def _padded(passable: BoolArray) -> bytearray:
     # A closed border spares every bounds check below.
-    return bytearray(np.pad(passable, 1).tobytes())
+    padded = np.zeros((passable.shape[0] + 2, passable.shape[1] + 2), dtype=np.bool_)
+    padded[1:-1, 1:-1] = passable
+    return bytearray(padded.tobytes())
 
 
 def _visit(unvisited: bytearray, start: int, width: int) -> None:
