@@ -13,6 +13,7 @@ from pydantic import AfterValidator, Field, model_validator
 from pcg.data_folder import data_folder
 from pcg.errors import InputError
 from pcg.files import read_text
+from pcg.representation import REPRESENTATIONS
 from pcg.request import Request
 from pcg.validation import Document, validated
 from pcg.yaml_text import parse
@@ -59,7 +60,10 @@ def agent_named(name: str) -> Agent:
     agents = read_agents()
     if name not in agents:
         first, *_, last = agents
-        raise InputError("--agent", f"found {name!r}, allowed are random, {first} ... {last}")
+        raise InputError(
+            "--agent",
+            f"found {name!r}, allowed are random, {first} ... {last}, {', '.join(REPRESENTATIONS)}, FILE.onnx",
+        )
     return agents[name]
 
 

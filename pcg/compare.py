@@ -149,6 +149,8 @@ def standard_tasks() -> list[Task]:
         task("at least 24 pushes", pushes=(24, MAX_PUSHES)),
         task("dependency", dependency=True),
         task("dependency, at least 12 pushes", dependency=True, pushes=(12, MAX_PUSHES)),
+        task("dependency, at least 16 pushes", dependency=True, pushes=(16, MAX_PUSHES)),
+        task("dependency, at least 20 pushes", dependency=True, pushes=(20, MAX_PUSHES)),
         task("dependency, 7-10 walls", dependency=True, wall_density=(0.07, 0.10)),
         task("occluded, 7-10 walls", occluded=True, wall_density=(0.07, 0.10)),
         task("two rooms given, at least 16 pushes", frozen=two_rooms(), pushes=(16, MAX_PUSHES)),

@@ -1,6 +1,6 @@
 """Gymnasium environments: editing a map until it is the level that was asked for.
 
-Importing this module registers `Sokoban-narrow-v0`, `Sokoban-turtle-v0` and `Sokoban-wide-v0`:
+Importing this module registers `Sokoban-narrow-v0`, `Sokoban-turtle-v0`, `Sokoban-wide-v0` and `Sokoban-flip-v0`:
 
     import gymnasium
     import pcg.environment
@@ -13,11 +13,13 @@ An observation is a dictionary:
 - `map`: (rows, columns) tiles, the first five of `Tile`;
 - `frozen`: (rows, columns) flags of the cells that cannot be changed;
 - `goal`: (rows, columns) flag of the goal crate, while the map is solved;
-- `position`: (2,) row and column of the agent, not in `wide`;
+- `position`: (2,) row and column of the agent, only in `narrow` and `turtle`;
+- `solution`: (rows, columns) the sum of 1 where the optimal solution moves crates and 2 where the player stands to push
+  them, only in `flip`;
 - `scalars`: what `observation.scalars` says about the map, the budgets and the request.
 
-The information of a step is that of `information`. The actions are those of `pcg.representation`. An episode terminates when everything that was asked for is met; it is
-truncated when a budget is spent.
+The information of a step is that of `information`. The actions are those of `pcg.representation`. An episode terminates
+when everything that was asked for is met; it is truncated when a budget is spent.
 """
 
 from dataclasses import replace
@@ -36,7 +38,7 @@ from pcg.representation import N_TILES, REPRESENTATIONS
 from pcg.request import Request
 from pcg.reward import RewardSettings
 from pcg.scalar_kernel import SCALAR_LIMIT, SCALARS
-from pcg.statistics_kernel import Column
+from pcg.statistics_kernel import CRATE_PASSES, PUSHED_FROM, Column
 from pcg.task import request_beginning, require_fitting
 from pcg.task_distribution import TaskDistribution
 from pcg.xsb import format_level
@@ -49,7 +51,7 @@ _COUNTED = tuple(column.name.lower() for column in Column)
 
 def information(episodes: Episodes) -> dict[str, IntArray]:
     """(n,) numbers by name: what is known about the maps, the columns of `Column`, and `steps` and `changes` done."""
-    counted = zip(_COUNTED, episodes.statistics.T.astype(np.int64), strict=True)
+    counted = zip(_COUNTED, episodes.statistics[:, : len(Column)].T.astype(np.int64), strict=True)
     return {**dict(counted), "steps": episodes.steps.copy(), "changes": episodes.changes.copy()}
 
 
@@ -62,6 +64,8 @@ def observation_space(settings: EpisodeSettings) -> "spaces.Dict[Any]":  # befor
         "goal": spaces.Box(0, 1, shape, np.uint8),
         "scalars": spaces.Box(-SCALAR_LIMIT, SCALAR_LIMIT, (SCALARS,), np.float32),
     }
+    if settings.sees_solution:
+        parts["solution"] = spaces.Box(0, CRATE_PASSES + PUSHED_FROM, shape, np.uint8)
     if settings.has_position:
         parts["position"] = spaces.MultiDiscrete(list(shape))
     return spaces.Dict(parts)
@@ -106,7 +110,7 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
     """Edits one map.
 
     Args:
-        representation: narrow, turtle or wide.
+        representation: narrow, turtle, wide or flip.
         rows: Rows of the map.
         columns: Columns of the map.
         reward: What is wanted, and what it is worth; None for the defaults.

@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pcg.arrays import BoolArray, FloatArray, IntArray
+from pcg.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from pcg.episode_kernel import advance
 from pcg.grid import Cell
 from pcg.level import TileArray
 from pcg.representation import REPRESENTATIONS, Representation
 from pcg.reward import Control, RewardSettings, distances, reward
 from pcg.solver import MAX_CELLS
-from pcg.statistics_kernel import CRATE, FLOOR, PLAYER, TARGET, WALL, Column, make_judge, measure
+from pcg.statistics_kernel import Column, make_judge, measure
 
 
 @dataclass(frozen=True)
@@ -24,11 +24,12 @@ class EpisodeSettings:
     """Size, budgets and start of an episode.
 
     Attributes:
-        representation: narrow, turtle or wide.
+        representation: narrow, turtle, wide or flip.
         rows: Rows.
         columns: Columns.
         change_share: Tiles that may be changed, by the number of tiles.
         step_share: Steps of an episode, by the number of tiles.
+        takes_back: An edit that leads away from what is wanted is taken back at once; it costs a step, but no change.
         thing_share: Chance of a cell to hold a player at the start; likewise a crate, a target.
         wall_spread: The chance of a wall is that of the middle of the wanted band, plus or minus up to this.
         reward: What is wanted.
@@ -42,6 +43,7 @@ class EpisodeSettings:
     columns: int = 10
     change_share: float = 0.3
     step_share: float = 3.0
+    takes_back: bool = False
     thing_share: float = 0.01
     wall_spread: float = 0.05
     reward: RewardSettings = field(default_factory=RewardSettings)
@@ -72,6 +74,11 @@ class EpisodeSettings:
         return REPRESENTATIONS[self.representation].has_position
 
     @property
+    def sees_solution(self) -> bool:
+        """Whether the agent sees where the optimal solution passes."""
+        return REPRESENTATIONS[self.representation].sees_solution
+
+    @property
     def n_actions(self) -> int:
         """Actions are 0 to n_actions - 1."""
         return REPRESENTATIONS[self.representation](self.shape, 1).n_actions
@@ -100,19 +107,6 @@ class Beginning:
     maps: TileArray
     frozen: TileArray
     controls: FloatArray
-
-
-def random_maps(rng: np.random.Generator, controls: FloatArray, settings: EpisodeSettings) -> TileArray:
-    """(n, rows, columns) maps with independent tiles: walls at about the wanted density, a few things, else floor."""
-    n = len(controls)
-    middle = controls[:, [Control.WALLS_LOW, Control.WALLS_HIGH]].mean(axis=1) / settings.cells
-    chance = np.clip(middle + rng.uniform(-settings.wall_spread, settings.wall_spread, n), 0.0, 1.0)
-    drawn = rng.random((n, settings.rows, settings.columns)) - chance[:, None, None]
-    maps = np.full(drawn.shape, FLOOR, dtype=np.uint8)
-    for k, tile in enumerate((PLAYER, CRATE, TARGET)):
-        maps[(drawn >= k * settings.thing_share) & (drawn < (k + 1) * settings.thing_share)] = tile
-    maps[drawn < 0] = WALL
-    return maps
 
 
 @dataclass(frozen=True)
@@ -148,7 +142,7 @@ class Episodes:
         maps: (n, rows, columns) tiles.
         frozen: (n, rows, columns) flags.
         controls: (n, len(Control)).
-        statistics: (n, len(Column)).
+        statistics: (n, len(Column)); where the agent sees the solution followed by the marks of each cell.
         distance: (n,) to what is wanted.
         steps: (n,) steps done.
         changes: (n,) changes done.
@@ -166,7 +160,6 @@ class Episodes:
         self.maps = np.zeros((n, *shape), dtype=np.uint8)
         self.frozen = np.zeros((n, *shape), dtype=np.uint8)
         self.controls = np.zeros((n, len(Control)))
-        self.statistics = np.zeros((n, len(Column)), dtype=np.int32)
         self.distance = np.zeros(n)
         self.steps = np.zeros(n, dtype=np.int64)
         self.changes = np.zeros(n, dtype=np.int64)
@@ -175,7 +168,9 @@ class Episodes:
             raise ValueError(f"the archive needs maps of {shape[0]} x {shape[1]} cells, found shape {archive.shape}")
         max_crates = settings.reward.crates + settings.spare_crates
         self._wanted = settings.reward.wanted()
-        self.judge = make_judge(archive, max_crates, settings.max_states)
+        marks = settings.sees_solution
+        self.statistics = np.zeros((n, len(Column) + marks * settings.cells), dtype=np.int32)
+        self.judge = make_judge(archive, max_crates, settings.max_states, 13 if marks else 16, marks=marks)
         self.representation: Representation = REPRESENTATIONS[settings.representation](shape, n)
 
     def begin(self, rng: np.random.Generator, episodes: IntArray, beginning: Beginning) -> None:
@@ -208,16 +203,23 @@ class Episodes:
         if actions.min() < 0 or actions.max() >= n_actions:
             raise ValueError(f"actions must be 0 to {n_actions - 1}, found {actions.min()} to {actions.max()}")
         before = self.distance.copy()
+        cells, tiles = self.representation.step(actions, self.maps)
+        kept = self._state_at(cells) if self.settings.takes_back else None
         changed = advance(
             self.maps,
             self.frozen,
-            *self.representation.step(actions),
+            cells,
+            tiles,
             self.statistics,
             self.controls,
             self.distance,
             self.judge,
             self._wanted,
         )
+        if kept is not None:
+            worse = self.distance > before
+            self._take_back(worse, cells, kept)
+            changed &= ~worse
         self.steps += 1
         self.changes += changed
         terminated = self.distance == 0
@@ -225,3 +227,16 @@ class Episodes:
         spent = (self.steps >= max_steps) | (self.changes >= max_changes)
         gained = reward(before, self.distance, self.settings.reward)
         return Transition(gained, changed, terminated, spent & ~terminated)
+
+    def _state_at(self, cells: IntArray) -> tuple[TileArray, Int32Array, FloatArray]:
+        """What an edit of one cell (n,) in each map may change: its tile, the statistics, the distance."""
+        return (
+            self.maps.reshape(len(cells), -1)[np.arange(len(cells)), cells],
+            self.statistics.copy(),
+            self.distance.copy(),
+        )
+
+    def _take_back(self, worse: BoolArray, cells: IntArray, kept: tuple[TileArray, Int32Array, FloatArray]) -> None:
+        tiles, statistics, distance = kept
+        self.maps.reshape(len(cells), -1)[worse, cells[worse]] = tiles[worse]
+        self.statistics[worse], self.distance[worse] = statistics[worse], distance[worse]

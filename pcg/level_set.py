@@ -39,7 +39,7 @@ class GeneratedLevel:
         solution: The solver's result for it.
         agent: Name of the generator.
         seed: Seed of the run that made it.
-        representation: Of a learned agent, how it edits levels (narrow, turtle, wide).
+        representation: Of a learned agent, how it edits levels (narrow, turtle, wide, flip).
         weights_hash: Of a learned agent, the hash of its weights.
         control_targets: What was asked of the generator for this level, by name.
         rejected: Attempts thrown away before this level was found, by reason.
@@ -67,7 +67,7 @@ class ManifestEntry(Document):
         name: Name of the level in the XSB file.
         agent: Name of the generator.
         seed: Seed of the run that made it.
-        representation: Of a learned agent, how it edits levels (narrow, turtle, wide).
+        representation: Of a learned agent, how it edits levels (narrow, turtle, wide, flip).
         weights_hash: Of a learned agent, the hash of its weights.
         control_targets: What was asked of the generator for this level, by name.
         rejected: Attempts thrown away before this level was found, by reason.

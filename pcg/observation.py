@@ -1,8 +1,9 @@
 """What a policy sees of an episode, as one flat vector.
 
 The parts, in order: the map one-hot by tile; the frozen cells; the goal crate one-hot (all zero while there is none);
-with a position also the position one-hot and the window around it, one-hot by tile with a sixth value for what is outside
-of the map, then the window's frozen cells; last the scalars of `scalars`.
+in flip the cells where the optimal solution moves crates, then those from which the player pushes them; with a position
+also the position one-hot and the window around it, one-hot by tile with a sixth value for what is outside of the map, then
+the window's frozen cells; last the scalars of `scalars`.
 """
 
 from collections.abc import Mapping
@@ -16,7 +17,7 @@ from pcg.episodes import Episodes, EpisodeSettings
 from pcg.level import TileArray
 from pcg.representation import N_TILES
 from pcg.scalar_kernel import SCALARS, write_scalars
-from pcg.statistics_kernel import Column
+from pcg.statistics_kernel import CRATE_PASSES, PUSHED_FROM, Column
 
 WINDOW = 5
 """Side of the window around the position."""
@@ -27,6 +28,8 @@ def observation_size(settings: EpisodeSettings) -> int:
     size = settings.cells * (N_TILES + 2) + SCALARS
     if settings.has_position:
         size += settings.cells + WINDOW * WINDOW * (N_TILES + 2)
+    elif settings.sees_solution:
+        size += 2 * settings.cells
     return size
 
 
@@ -66,6 +69,8 @@ def observation_parts(episodes: Episodes, chosen: IntArray | slice = EVERY) -> d
         "goal": goal.reshape(maps.shape),
         "scalars": scalars(episodes, chosen),
     }
+    if settings.sees_solution:
+        parts["solution"] = episodes.statistics[chosen, len(Column) :].astype(np.uint8).reshape(maps.shape)
     if episodes.representation.has_position:
         parts["position"] = episodes.coordinates[episodes.representation.positions()[chosen]]
     return parts
@@ -79,6 +84,9 @@ def flat_observations(parts: Mapping[str, npt.NDArray[Any]], settings: EpisodeSe
         parts["frozen"].reshape(n, -1),
         parts["goal"].reshape(n, -1),
     ]
+    if "solution" in parts:
+        marks = parts["solution"].reshape(n, -1)
+        pieces += [(marks & CRATE_PASSES) > 0, (marks & PUSHED_FROM) > 0]
     if "position" in parts:
         row, column = parts["position"].T
         pieces.append((row * settings.columns + column)[:, None] == np.arange(settings.cells))

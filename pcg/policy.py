@@ -47,16 +47,18 @@ class PolicyMetadata(Document):
         targets: Targets of a finished level.
         change_share: Budget of changes by cells.
         step_share: Budget of steps by cells.
+        takes_back: Whether edits that lead away from what is wanted are taken back.
     """
 
     format: Literal[1] = 1
-    representation: Literal["narrow", "turtle", "wide"]
+    representation: Literal["narrow", "turtle", "wide", "flip"]
     rows: int = Field(ge=1, le=100)
     columns: int = Field(ge=1, le=100)
     crates: int = Field(ge=1, le=100)
     targets: int = Field(ge=1, le=100)
     change_share: float = Field(gt=0, le=100)
     step_share: float = Field(gt=0, le=1000)
+    takes_back: bool = False
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
@@ -74,6 +76,7 @@ class PolicyMetadata(Document):
             targets=settings.reward.targets,
             change_share=settings.change_share,
             step_share=settings.step_share,
+            takes_back=settings.takes_back,
         )
 
     def settings(self) -> EpisodeSettings:
@@ -84,6 +87,7 @@ class PolicyMetadata(Document):
             columns=self.columns,
             change_share=self.change_share,
             step_share=self.step_share,
+            takes_back=self.takes_back,
             reward=RewardSettings(crates=self.crates, targets=self.targets),
         )
 

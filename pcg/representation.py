@@ -1,20 +1,23 @@
-"""How an agent edits a map: narrow, turtle or wide (Khalifa et al., PCGRL, AIIDE 2020).
+"""How an agent edits a map: narrow, turtle or wide (Khalifa et al., PCGRL, AIIDE 2020), or flip.
 
 - *narrow*: the environment goes from cell to cell, in an order drawn for each episode; the agent keeps the tile there or
   replaces it. Actions: 0 keep, 1 + t write tile t.
 - *turtle*: the agent stands on a cell and walks left, up, right, down (actions 0 to 3) or writes tile t (action 4 + t).
 - *wide*: the agent writes any tile anywhere: action 5 * cell + t.
+- *flip*: the agent builds a wall on a floor or removes one, anywhere: action cell. Players, crates and targets stay where
+  the start map has them, so it needs start maps that have them.
 
 Cells are numbered `row * columns + column`, tiles as in `Tile`, the first five of it. All methods work on n episodes at
 once.
 """
 
-from typing import Protocol
+from typing import Final, Protocol
 
 import numpy as np
 
 from pcg.arrays import IntArray
 from pcg.grid import DIRECTIONS, Cell
+from pcg.level import Tile, TileArray
 
 N_TILES = 5
 """Tiles that an agent can write: floor, wall, player, crate, target."""
@@ -31,6 +34,10 @@ class Representation(Protocol):
         """Whether the agent edits the map around one cell."""
 
     @property
+    def sees_solution(self) -> bool:
+        """Whether the agent sees where the optimal solution passes."""
+
+    @property
     def n_actions(self) -> int:
         """Actions are 0 to n_actions - 1."""
 
@@ -40,11 +47,12 @@ class Representation(Protocol):
     def positions(self) -> IntArray:
         """(n,) cell of each episode's agent; 0 if it has none."""
 
-    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+    def step(self, actions: IntArray, maps: TileArray) -> tuple[IntArray, IntArray]:
         """Carries out one action in each episode.
 
         Args:
             actions: (n,).
+            maps: (n, rows, columns) tiles before the action.
 
         Returns:
             (n,) cells to write to and (n,) tiles to write, `KEEP` for none.
@@ -55,6 +63,7 @@ class Narrow:
     """Visits all cells in random order, again and again."""
 
     has_position = True
+    sees_solution = False
     n_actions = 1 + N_TILES
 
     def __init__(self, shape: Cell, n: int) -> None:
@@ -73,8 +82,9 @@ class Narrow:
         """(n,) cells that are visited."""
         return self._order[self._episodes, self._visited]
 
-    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+    def step(self, actions: IntArray, maps: TileArray) -> tuple[IntArray, IntArray]:
         """Keeps or writes the tile, and goes on to the next cell."""
+        del maps
         cells = self.positions()
         self._visited = (self._visited + 1) % self._order.shape[1]
         return cells, actions - 1
@@ -84,6 +94,7 @@ class Turtle:
     """Walks over the map from a random cell; a step over the edge does nothing."""
 
     has_position = True
+    sees_solution = False
     n_actions = len(DIRECTIONS) + N_TILES
 
     def __init__(self, shape: Cell, n: int) -> None:
@@ -109,8 +120,9 @@ class Turtle:
         """(n,) cells where the turtles stand."""
         return self._cells
 
-    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+    def step(self, actions: IntArray, maps: TileArray) -> tuple[IntArray, IntArray]:
         """Walks, or writes the tile where the turtle stands."""
+        del maps
         cells = self._cells
         self._cells = self._next[actions, cells]
         return cells, self._written[actions]
@@ -120,6 +132,7 @@ class Wide:
     """Writes anywhere."""
 
     has_position = False
+    sees_solution = False
 
     def __init__(self, shape: Cell, n: int) -> None:
         self.n_actions = shape[0] * shape[1] * N_TILES
@@ -133,10 +146,44 @@ class Wide:
         """(n,) zeros."""
         return self._nowhere
 
-    def step(self, actions: IntArray) -> tuple[IntArray, IntArray]:
+    def step(self, actions: IntArray, maps: TileArray) -> tuple[IntArray, IntArray]:
         """Writes the tile."""
+        del maps
         return actions // N_TILES, actions % N_TILES
 
 
-REPRESENTATIONS: dict[str, type[Narrow | Turtle | Wide]] = {"narrow": Narrow, "turtle": Turtle, "wide": Wide}
+_FLIPPED: Final = np.array([Tile.WALL, Tile.FLOOR, *[KEEP] * (len(Tile) - 2)])
+"""What `Flip` writes, by the tile that is there."""
+
+
+class Flip:
+    """Builds or removes a wall anywhere."""
+
+    has_position = False
+    sees_solution = True
+
+    def __init__(self, shape: Cell, n: int) -> None:
+        self.n_actions = shape[0] * shape[1]
+        self._episodes = np.arange(n)
+        self._nowhere = np.zeros(n, dtype=np.int64)
+
+    def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
+        """Nothing is drawn."""
+        del rng, episodes
+
+    def positions(self) -> IntArray:
+        """(n,) zeros."""
+        return self._nowhere
+
+    def step(self, actions: IntArray, maps: TileArray) -> tuple[IntArray, IntArray]:
+        """Writes floor in place of a wall, and a wall in place of floor."""
+        return actions, _FLIPPED[maps.reshape(len(maps), -1)[self._episodes, actions]]
+
+
+REPRESENTATIONS: dict[str, type[Narrow | Turtle | Wide | Flip]] = {
+    "narrow": Narrow,
+    "turtle": Turtle,
+    "wide": Wide,
+    "flip": Flip,
+}
 """By name; made of a shape and the number of episodes."""

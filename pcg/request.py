@@ -116,7 +116,7 @@ class LevelSource(Protocol):
 
     @property
     def representation(self) -> str | None:
-        """Of a policy, how it edits levels (narrow, turtle, wide)."""
+        """Of a policy, how it edits levels (narrow, turtle, wide, flip)."""
 
     @property
     def weights_hash(self) -> str | None:

@@ -49,9 +49,17 @@ class Column(IntEnum):
     """Cells in which the map differs from the most similar one of the archive; all of them without an archive."""
 
 
+CRATE_PASSES, PUSHED_FROM = 1, 2
+"""Marks of a cell in the optimal solution, added up; see `make_judge`."""
+
+N_COLUMNS = len(Column)
+
+
 _PLAYERS, _CRATES, _TARGETS, _WALLS, _REGIONS = (int(column) for column in list(Column)[:5])
 _SOLVABLE, _PUSHES, _GOAL, _OCCLUDED, _DEPENDENCY, _CLEARANCE, _NOVELTY = (int(column) for column in list(Column)[5:])
 _LOOKUPS, _HITS = 0, 1
+_MARKS = 4
+"""Where a verdict's marks begin."""
 
 
 class Judge(NamedTuple):
@@ -59,7 +67,7 @@ class Judge(NamedTuple):
 
     Attributes:
         keys: (size, 2) hashes of canonical maps, size a power of two.
-        verdicts: (size, 4) solvable, pushes, goal crate, dependency of the maps with these keys.
+        verdicts: (size, 4 or 4 + cells) solvable, pushes, goal crate, dependency of the maps with these keys, then marks.
         counters: Look-ups and hits so far.
         archive: (m, rows, columns) maps that novelty is measured against, m may be 0.
         max_crates: Maps with more crates are not solved.
@@ -79,9 +87,13 @@ class Judge(NamedTuple):
         return float(self.counters[_HITS] / max(1, self.counters[_LOOKUPS]))
 
 
-def make_judge(archive: TileArray, max_crates: int, max_states: int, bits: int = 16) -> Judge:
-    """A judge with an empty cache of 2 ** `bits` verdicts, 32 bytes each."""
-    keys, verdicts = np.zeros((1 << bits, 2), dtype=np.uint64), np.zeros((1 << bits, 4), dtype=np.int32)
+def make_judge(archive: TileArray, max_crates: int, max_states: int, bits: int = 16, *, marks: bool = False) -> Judge:
+    """A judge with an empty cache of 2 ** `bits` verdicts, 32 bytes each.
+
+    With `marks` it also says where the optimal solution passes: statistics then have a column more for each cell.
+    """
+    cells = archive.shape[1] * archive.shape[2] if marks else 0
+    keys, verdicts = np.zeros((1 << bits, 2), dtype=np.uint64), np.zeros((1 << bits, 4 + cells), dtype=np.int32)
     return Judge(keys, verdicts, np.zeros(2, dtype=np.int64), archive, max_crates, max_states)
 
 
@@ -179,11 +191,12 @@ def _look_up(row: Int32Array, judge: Judge, scratch: Scratch) -> None:
         judge.counters[_HITS] += 1
     else:
         judge.keys[slot, 0], judge.keys[slot, 1] = low, high
-        judge.verdicts[slot] = _verdict(scratch.board, scratch.width, judge.max_states)
+        _decide(scratch.board, scratch.width, judge.max_states, judge.verdicts[slot])
     row[_SOLVABLE] = judge.verdicts[slot, 0]
     row[_PUSHES] = judge.verdicts[slot, 1]
     row[_GOAL] = judge.verdicts[slot, 2]
     row[_DEPENDENCY] = judge.verdicts[slot, 3]
+    row[N_COLUMNS:] = judge.verdicts[slot, 4:]
 
 
 @njit(cache=True)
@@ -216,18 +229,38 @@ def _key(scratch: Scratch) -> tuple[np.uint64, np.uint64]:
 
 
 @njit(cache=True)
-def _verdict(board: ByteArray, width: int, max_states: int) -> tuple[int, int, int, int]:
-    """Solvable, pushes, goal crate (inner cell number), dependency."""
+def _decide(board: ByteArray, width: int, max_states: int, verdict: Int32Array) -> None:
+    """Writes solvable, pushes, goal crate (inner cell number), dependency, and the marks if there is room."""
+    verdict[:] = 0
+    verdict[2] = -1
     wall = (board == WALL).astype(np.uint8)
     player = np.flatnonzero(board == PLAYER)[0]
     crates = np.flatnonzero(board == CRATE).astype(np.int16)
     targets = np.flatnonzero(board == TARGET).astype(np.int32)
     status, _, path = fewest_pushes(make_board(wall, width, targets), player, crates, 0, max_states)
     if status != SOLVED:
-        return 0, 0, -1, 0
+        return
+    if verdict.size > _MARKS:
+        _mark(path, width, verdict[_MARKS:])
     goal, _ = start_of(path, targets[0])
-    number = (goal // width - 1) * (width - 2) + goal % width - 1
-    return 1, len(path), number, int(depends(wall, width, player, crates, targets[0], path, max_states))
+    verdict[0], verdict[1], verdict[2] = 1, len(path), _inner(goal, width)
+    verdict[3] = depends(wall, width, player, crates, targets[0], path, max_states)
+
+
+@njit(cache=True)
+def _inner(cell: int, width: int) -> int:
+    """The number of a cell of the board without its border."""
+    return (cell // width - 1) * (width - 2) + cell % width - 1
+
+
+@njit(cache=True)
+def _mark(path: Int32Array, width: int, marks: Int32Array) -> None:
+    """Writes where the pushes of `path` (cell of the crate, step) move crates, and where the player stands for them."""
+    for k in range(len(path)):
+        cell, step = path[k, 0], path[k, 1]
+        marks[_inner(cell, width)] |= CRATE_PASSES
+        marks[_inner(cell + step, width)] |= CRATE_PASSES
+        marks[_inner(cell - step, width)] |= PUSHED_FROM
 
 
 @njit(cache=True)

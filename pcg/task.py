@@ -3,12 +3,13 @@
 import numpy as np
 
 from pcg.arrays import FloatArray
-from pcg.episodes import Beginning, EpisodeSettings, random_maps
+from pcg.episodes import Beginning, EpisodeSettings
 from pcg.errors import InputError
 from pcg.frozen import FrozenTiles
 from pcg.representation import N_TILES
 from pcg.request import Request
 from pcg.reward import Control
+from pcg.start_maps import start_maps
 
 _SIGN = {None: 0, False: -1, True: 1}
 
@@ -52,7 +53,6 @@ def require_fitting(request: Request, settings: EpisodeSettings, where: str) -> 
 def request_beginning(rng: np.random.Generator, n: int, request: Request, settings: EpisodeSettings) -> Beginning:
     """Random start maps for n episodes with the same request."""
     controls = np.tile(request_controls(request), (n, 1))
-    maps = random_maps(rng, controls, settings)
     fixed = request.frozen or FrozenTiles.none(request.rows, request.columns)
-    frozen = np.broadcast_to(~fixed.is_open, maps.shape).astype(np.uint8)
-    return Beginning(np.where(frozen, fixed.tiles, maps), frozen, controls)
+    maps = start_maps(rng, controls, settings, fixed)
+    return Beginning(maps, np.broadcast_to(~fixed.is_open, maps.shape).astype(np.uint8), controls)

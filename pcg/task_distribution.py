@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pcg.arrays import FloatArray
-from pcg.episodes import Beginning, EpisodeSettings, random_maps
+from pcg.episodes import Beginning, EpisodeSettings
 from pcg.level import TileArray
 from pcg.request import MAX_PUSHES
 from pcg.reward import Control
+from pcg.start_maps import start_maps
 from pcg.statistics_kernel import FLOOR, WALL
 
 
@@ -55,7 +56,7 @@ class TaskDistribution:
     def beginning(self, rng: np.random.Generator, n: int, settings: EpisodeSettings) -> Beginning:
         """Draws n tasks with random start maps."""
         controls = self.controls(rng, n, settings.cells)
-        maps = random_maps(rng, controls, settings)
+        maps = start_maps(rng, controls, settings)
         return Beginning(maps, self._frozen(rng, maps), controls)
 
     def _frozen(self, rng: np.random.Generator, maps: TileArray) -> TileArray:
@@ -69,3 +70,14 @@ class TaskDistribution:
         inside = (down >= top) & (down < top + high) & (right >= left) & (right < left + wide)
         inside &= rng.random(one_each) < self.frozen_share
         return np.asarray(inside & ((maps == FLOOR) | (maps == WALL)), dtype=np.uint8)
+
+
+LONG_SOLUTIONS = TaskDistribution(
+    wall_density=(0.05, 0.2),
+    wall_width=(0.03, 0.2),
+    pushes=(8, 28),
+    open_share=1.0,
+    occluded_share=0.0,
+    dependency_share=0.25,
+)
+"""At least so many pushes, in any band of walls, some with a dependency."""

@@ -38,7 +38,7 @@ from pcg.files import read_text, replacing, write_text
 from pcg.learning_curve import CurveRow, draw_curves, read_curve
 from pcg.observation import observation_size, observations
 from pcg.statistics_kernel import Column
-from pcg.task_distribution import TaskDistribution
+from pcg.task_distribution import LONG_SOLUTIONS, TaskDistribution
 
 RUN_FILE, CURVE_FILE, CHECKPOINT_FILE, PICTURE_FILE = "run.json", "curve.jsonl", "checkpoint.pt", "curve.png"
 
@@ -74,6 +74,26 @@ class TrainingSettings:
     gae_lambda: float = 0.95
     clip: float = 0.2
     hidden: int = 256
+
+    @classmethod
+    def of(cls, representation: str, rows: int = 10, columns: int = 10) -> "TrainingSettings":
+        """The settings for a representation.
+
+        Flip begins with levels and learns to lengthen their solutions. What an edit is worth shows at once, since those
+        for the worse are taken back: so little is made of what comes later, and a small network of the solution's
+        cells will do.
+        """
+        if representation != "flip":
+            return cls(EpisodeSettings(representation, rows, columns))
+        return cls(
+            EpisodeSettings(representation, rows, columns, step_share=0.6, takes_back=True),
+            LONG_SOLUTIONS,
+            n_epochs=3,
+            entropy=0.005,
+            gamma=0.95,
+            gae_lambda=0.8,
+            hidden=128,
+        )
 
 
 class EpisodeTally:

@@ -33,7 +33,7 @@ class CroppedObservation(gymnasium.ObservationWrapper[Any, np.int64, Any], Recor
     """Shows a square of the map around the position; what is outside of the map is `OUTSIDE`, and frozen.
 
     Args:
-        env: narrow or turtle; `wide` has no position.
+        env: narrow or turtle; the others have no position.
         size: Side of the square, an odd number.
     """
 
@@ -42,7 +42,7 @@ class CroppedObservation(gymnasium.ObservationWrapper[Any, np.int64, Any], Recor
         gymnasium.ObservationWrapper.__init__(self, env)
         parts = env.observation_space
         if not isinstance(parts, spaces.Dict) or "position" not in parts.spaces:
-            raise ValueError("only observations with a position can be cropped; wide has none")
+            raise ValueError("only observations with a position can be cropped; wide and flip have none")
         if parts["map"].shape != _settings_of(env).shape:
             raise ValueError("only whole maps of tiles can be cropped; crop first, then make flags of tiles")
         if size < 1 or size % 2 == 0:

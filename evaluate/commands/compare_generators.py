@@ -11,11 +11,12 @@ from evaluate.commands.options import Json, Out, application
 from evaluate.comparison_table import COLUMNS, SUMMARY_COLUMNS, TABLE_FILE, rows, summary_rows, write_comparison
 from evaluate.inputs import require_choice, require_writable
 from evaluate.output import print_json, print_line, print_table, progress
-from pcg.agents import read_agents
+from pcg.agents import policy_path, read_agents
 from pcg.compare import Measurement, band_tasks, compare, standard_tasks
 from pcg.policy import load_policy
-from pcg.policy_source import PolicySource, UntrainedPolicy, policies_of
+from pcg.policy_source import PolicySource, UntrainedPolicy
 from pcg.random_source import RandomSource
+from pcg.representation import REPRESENTATIONS
 from pcg.request import LevelSource
 
 app = application()
@@ -75,7 +76,7 @@ def sources(files: Sequence[Path] = ()) -> dict[str, LevelSource]:
     Raises:
         InputError: a policy is missing or cannot be read.
     """
-    policies = policies_of(read_agents().values())
+    policies = {name: load_policy(policy_path(name)) for name in REPRESENTATIONS}
     untrained = {name: UntrainedPolicy(p.settings, p.weights_hash, p.session) for name, p in policies.items()}
     return {
         "random": RandomSource(),

@@ -12,7 +12,7 @@ import typer
 from evaluate.commands.options import Json, Out, Seed, application
 from evaluate.inputs import require_writable
 from evaluate.output import print_json, print_line, print_table, progress
-from pcg.agents import agent_named
+from pcg.agents import agent_named, policy_path
 from pcg.errors import InputError
 from pcg.frozen import read_frozen
 from pcg.generate import RANDOM_AGENT, generated_levels
@@ -20,6 +20,7 @@ from pcg.level_set import GeneratedLevel, manifest_entry, write_level_set
 from pcg.policy import load_policy
 from pcg.policy_source import PolicySource, source_of
 from pcg.random_source import RandomSource
+from pcg.representation import REPRESENTATIONS
 from pcg.request import LevelSource, Request
 
 app = application()
@@ -41,7 +42,7 @@ def run(
         str,
         typer.Option(
             metavar="NAME|FILE",
-            help="What proposes levels: random, m0 ... m35 of data/agents.yaml, or a policy of your own (.onnx).",
+            help="What proposes levels: random, m0 ... m35 of data/agents.yaml, narrow, turtle, wide, flip, or your own .onnx.",
         ),
     ] = "random",
     count: Annotated[int, typer.Option(metavar="N", min=1, max=1_000_000, help="Number of levels.")] = 10,
@@ -117,7 +118,7 @@ def request_of(
     """What the options ask for: the request of the agent, changed where an option is given.
 
     Args:
-        agent: Name of the agent, `random`, or the file of a policy.
+        agent: Name of the agent, `random`, the representation of a policy or its file.
         frozen: File with frozen tiles, which decide on rows and columns.
         pushes: Band of the pushes.
         wall_density: Band of the wall density.
@@ -144,17 +145,21 @@ def _filled(band: Band, default: tuple[float, float]) -> tuple[float, ...]:
 
 
 def _default_request(agent: str) -> Request:
-    """What is asked for without options: of a policy in a file, levels of the size that it makes."""
+    """What is asked for without options: of a policy without bands, levels of the size that it makes."""
     if agent == RANDOM_AGENT:
         return Request()
-    if not _is_file(agent):
+    weights = _weights(agent)
+    if weights is None:
         return agent_named(agent).request
-    made = load_policy(Path(agent)).settings
+    made = load_policy(weights).settings
     return Request(made.rows, made.columns, made.reward.crates, made.reward.targets)
 
 
-def _is_file(agent: str) -> bool:
-    return agent.endswith(".onnx")
+def _weights(agent: str) -> Path | None:
+    """The file of a policy that is named by its representation or its path; None for an agent with a band of its own."""
+    if agent in REPRESENTATIONS:
+        return policy_path(agent)
+    return Path(agent) if agent.endswith(".onnx") else None
 
 
 def source_named(agent: str) -> LevelSource:
@@ -165,7 +170,8 @@ def source_named(agent: str) -> LevelSource:
     """
     if agent == RANDOM_AGENT:
         return RandomSource()
-    return PolicySource(load_policy(Path(agent))) if _is_file(agent) else source_of(agent_named(agent))
+    weights = _weights(agent)
+    return source_of(agent_named(agent)) if weights is None else PolicySource(load_policy(weights))
 
 
 def generate(count: int, seed: int, request: Request, folder: Path, agent: str = RANDOM_AGENT) -> list[GeneratedLevel]:
@@ -176,7 +182,7 @@ def generate(count: int, seed: int, request: Request, folder: Path, agent: str =
     """
     levels: list[GeneratedLevel] = []
     source = source_named(agent)
-    name = source.representation or agent if _is_file(agent) else agent
+    name = agent if _weights(agent) is None else source.representation or agent
     stream = islice(generated_levels(source, request, seed, name), count)
     try:
         with progress() as bar:

@@ -20,7 +20,9 @@ LEARNING = ("torch", "stable_baselines3", "onnx")
 @app.command()
 def run(
     *,
-    representation: Annotated[str, typer.Option(metavar="NAME", help="How it edits levels: narrow, turtle or wide.")],
+    representation: Annotated[
+        str, typer.Option(metavar="NAME", help="How it edits levels: narrow, turtle, wide or flip.")
+    ],
     out: Out,
     steps: Annotated[int, typer.Option(metavar="N", min=1, help="Steps in all; rounded up.")] = 5_000_000,
     seed: Seed = 0,
@@ -36,11 +38,10 @@ def run(
     """
     require_choice("--representation", representation, list(REPRESENTATIONS))
     require_learning()
-    from pcg.episodes import EpisodeSettings  # noqa: PLC0415  # together with torch, below
     from pcg.train import PICTURE_FILE, TrainingSettings, train  # noqa: PLC0415  # torch may be missing
 
     require_writable(out)
-    settings = TrainingSettings(episode=EpisodeSettings(representation, rows, columns))
+    settings = TrainingSettings.of(representation, rows, columns)
     last: CurveRow | None = None
     with progress("met", "valid") as bar:
         task = bar.add_task("steps", total=steps, met="", valid="")

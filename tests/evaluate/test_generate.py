@@ -74,6 +74,15 @@ def test_agents_make_what_they_are_asked_for(run: Run, tmp_path: Path, agent: st
     assert again == {**found, "out": "again"}
 
 
+def test_policies_go_by_their_representation(run: Run, tmp_path: Path):
+    """Without a band of its own, flip makes what is asked for, and its levels are called after it."""
+    document(run("generate", "--agent", "flip", "--count", "2", "--min-pushes", "14", "--out", "s", "--json"))
+    entries = read_manifest(tmp_path / "s" / "manifest.jsonl")
+    assert [(entry.name, entry.representation) for entry in entries] == [("flip-0-0", "flip"), ("flip-0-1", "flip")]
+    assert all(entry.pushes is not None and entry.pushes >= 14 for entry in entries)
+    assert {entry.weights_hash for entry in entries} == {load_policy(policy_path("flip")).weights_hash}
+
+
 def test_a_policy_of_ones_own(run: Run, tmp_path: Path):
     """Its file stands for an agent: levels of the size that it makes, called after its representation."""
     weights = str(policy_path("wide"))
@@ -104,7 +113,10 @@ def ten_by_ten() -> str:
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [
-        (["--agent", "m36"], "--agent: found 'm36', allowed are random, m0 ... m35"),
+        (
+            ["--agent", "m36"],
+            "--agent: found 'm36', allowed are random, m0 ... m35, narrow, turtle, wide, flip, FILE.onnx",
+        ),
         (["--agent", "m0", "--rows", "7"], "policy narrow: asked for 7 x 10 cells"),
         (["--agent", "nothing.onnx"], "nothing.onnx: "),
         (["--frozen", "nothing.txt"], "nothing.txt: no such file"),
@@ -164,7 +176,7 @@ def test_compare_writes_tables(run: Run, tmp_path: Path):
     found = document(run("compare-generators", "--out", "c", *options, "--json"))["measurements"]
     assert {m["task"] for m in found} == {task}
     sources = {m["source"] for m in found}
-    assert {"random", "narrow", "untrained narrow", "turtle", "wide", str(policy_path("wide"))} <= sources
+    assert {"random", "narrow", "untrained narrow", "turtle", "wide", "flip", str(policy_path("wide"))} <= sources
     assert len(found) == len(sources)
     assert len((tmp_path / "c" / "measurements.jsonl").read_text().splitlines()) == len(found)
     table = (tmp_path / "c" / "comparison.md").read_text()

@@ -9,7 +9,7 @@ from pcg.errors import InputError
 
 def test_unknown_representations_are_refused(tmp_path: Path):
     """The message lists what there is, before anything is written."""
-    with pytest.raises(InputError, match="found 'broad', allowed are narrow, turtle, wide"):
+    with pytest.raises(InputError, match="found 'broad', allowed are narrow, turtle, wide, flip"):
         run(representation="broad", out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pcg.episodes import Beginning, Episodes, EpisodeSettings, random_maps
+from pcg.episodes import Beginning, Episodes, EpisodeSettings
 from pcg.level import Tile
 from pcg.representation import REPRESENTATIONS
 from pcg.request import Request
@@ -110,13 +110,26 @@ def test_a_valid_map_has_the_wanted_numbers():
     assert episodes.is_valid().tolist() == [True, False]
 
 
-def test_start_maps_have_about_the_wanted_walls():
-    """Walls are drawn around the middle of the band, other things are rare."""
-    controls = np.zeros((400, len(Control)))
-    controls[:, Control.WALLS_LOW], controls[:, Control.WALLS_HIGH] = 10, 20
-    maps = random_maps(np.random.default_rng(0), controls, EpisodeSettings())
-    assert (maps == Tile.WALL).mean() == pytest.approx(0.15, abs=0.01)
-    assert (maps == Tile.CRATE).mean() == pytest.approx(0.01, abs=0.003)
+@pytest.mark.parametrize("name", REPRESENTATIONS)
+def test_edits_for_the_worse_are_taken_back(name: str):
+    """No step leads away from what is wanted; what is taken back leaves map and statistics as they were, at no change."""
+    settings = EpisodeSettings(name, step_share=10, change_share=10, takes_back=True)
+    episodes, rng = begun(settings, 16)
+    taken_back = 0
+    for _ in range(150):
+        before = episodes.maps.copy(), episodes.distance.copy(), episodes.statistics.copy(), episodes.changes.copy()
+        done = episodes.step(rng.integers(episodes.representation.n_actions, size=16))
+        maps, distance, statistics, changes = before
+        assert (episodes.distance <= distance).all()
+        assert (done.reward >= 0).all()
+        assert (done.changed == (episodes.maps != maps).any(axis=(1, 2))).all()
+        assert (episodes.changes == changes + done.changed).all()
+        assert (episodes.statistics[~done.changed] == statistics[~done.changed]).all()
+        fresh = Episodes(settings, 16)
+        fresh.begin(rng, np.arange(16), Beginning(episodes.maps, episodes.frozen, episodes.controls))
+        assert (fresh.statistics == episodes.statistics).all()
+        taken_back += int((~done.changed).sum())
+    assert taken_back > 0
 
 
 @pytest.mark.parametrize("name", REPRESENTATIONS)
@@ -163,5 +176,5 @@ def test_the_largest_maps_are_solved(shape: tuple[int, int]):
 
 def test_unknown_representations_are_refused():
     """The message lists what there is."""
-    with pytest.raises(ValueError, match="narrow, turtle, wide"):
+    with pytest.raises(ValueError, match="narrow, turtle, wide, flip"):
         EpisodeSettings("broad")

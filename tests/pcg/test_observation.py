@@ -6,7 +6,7 @@ from pcg.observation import WINDOW, observation_parts, observation_size, observa
 from pcg.representation import REPRESENTATIONS
 from pcg.reward import Control
 from pcg.scalar_kernel import SCALAR_LIMIT, SCALARS
-from pcg.statistics_kernel import Column
+from pcg.statistics_kernel import CRATE_PASSES, PUSHED_FROM, Column
 from pcg.task_distribution import TaskDistribution
 
 
@@ -34,7 +34,11 @@ def test_vectors_hold_the_map_the_position_and_the_window(name: str):
         assert (one_hot.reshape(cells, 5).sum(axis=1) == 1).all()
         assert (frozen == episodes.frozen[k].ravel()).all()
         assert np.flatnonzero(goal).tolist() == [c for c in [episodes.statistics[k, Column.GOAL]] if c >= 0]
-        if name != "wide":
+        if name == "flip":
+            passed, pushed_from, rest = np.split(rest, [cells, 2 * cells])
+            marks = episodes.statistics[k, len(Column) :]
+            assert (CRATE_PASSES * passed + PUSHED_FROM * pushed_from == marks).all()
+        elif name != "wide":
             position, window, rest = np.split(rest, [cells, cells + 7 * WINDOW**2])
             here = int(episodes.representation.positions()[k])
             assert np.flatnonzero(position).tolist() == [here]

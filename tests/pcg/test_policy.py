@@ -83,9 +83,11 @@ def test_taking_a_few_does_not_prefer_short_attempts():
     assert attempts("narrow", EASY, 40)[:10] == attempts("narrow", EASY, 10)
 
 
-def test_policies_make_levels_differ():
-    """Goal crates and targets are not always in the same few cells."""
-    levels = [attempt.level for attempt in attempts("narrow", EASY, 200) if attempt.level]
+@pytest.mark.parametrize(("name", "fewest"), [("narrow", 1), ("flip", 14)])
+def test_policies_make_levels_differ(name: str, fewest: int):
+    """Goal crates and targets are not always in the same few cells, in long solutions neither."""
+    made = attempts(name, replace(EASY, pushes=(fewest, 1000)), 200)
+    levels = [attempt.level for attempt in made if attempt.level and attempt.met]
     assert len({level.goal_crate for level in levels}) > 20
     assert len({level.targets[0] for level in levels}) > 20
 

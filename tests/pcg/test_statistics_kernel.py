@@ -1,13 +1,15 @@
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from pcg.dependency import has_dependency
+from pcg.grid import DIRECTIONS, Cell
 from pcg.level import Level
 from pcg.metrics import occluded, statistics
 from pcg.solver import solve
-from pcg.statistics_kernel import Column, Judge, edit, make_judge, measure
+from pcg.statistics_kernel import CRATE_PASSES, PUSHED_FROM, Column, Judge, edit, make_judge, measure
 from tests.pcg.maps import furnished, scattered
 
 NO_ARCHIVE = np.zeros((0, 10, 10), dtype=np.uint8)
@@ -108,6 +110,34 @@ def test_a_player_who_walks_needs_no_new_verdict():
     assert found == [1, 1, 0]
     assert by.counters.tolist() == [3, 1]
     assert by.hit_rate == pytest.approx(1 / 3)
+
+
+def test_marks_are_those_of_the_solution():
+    """Cells that crates pass and cells that they are pushed from, of the solution that the solver names; else none."""
+    maps = furnished(np.random.default_rng(4), 100)
+    marked = np.full((len(maps), len(Column) + 100), 99, dtype=np.int32)
+    measure(maps, np.arange(len(maps)), marked, make_judge(NO_ARCHIVE, 2, 20_000, marks=True))
+    assert (marked[:, : len(Column)] == measured(maps, judge())).all()
+    for tiles, row in zip(maps, marked, strict=True):
+        expected = np.zeros((10, 10), dtype=np.int32)
+        if row[Column.SOLVABLE]:
+            level = Level(tiles)
+            for cell, (down, right) in pushes_of(level, solve(level).lurd):
+                expected[cell] |= CRATE_PASSES
+                expected[cell[0] + down, cell[1] + right] |= CRATE_PASSES
+                expected[cell[0] - down, cell[1] - right] |= PUSHED_FROM
+        assert (row[len(Column) :].reshape(10, 10) == expected).all()
+    assert marked[:, len(Column) :].any()
+
+
+def pushes_of(level: Level, lurd: str) -> Iterator[tuple[Cell, Cell]]:
+    """Cell of the crate and direction of every push."""
+    row, column = level.player
+    for letter in lurd:
+        down, right = DIRECTIONS[letter.lower()]
+        row, column = row + down, column + right
+        if letter.isupper():
+            yield (row, column), (down, right)
 
 
 def test_only_furnished_maps_are_solved():

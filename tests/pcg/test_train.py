@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from dataclasses import asdict
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -77,6 +78,18 @@ def test_the_seed_decides(tmp_path: Path):
     one, same, other = ((tmp_path / folder / "narrow.onnx").read_bytes() for folder in "abc")
     assert one == same
     assert one != other
+
+
+@pytest.mark.parametrize("name", REPRESENTATIONS)
+def test_the_command_trains_with_the_committed_settings(name: str):
+    """What a run recorded is what `manipuzzle train` uses today; settings that it did not know have their defaults."""
+    from pcg.agents import policy_path  # noqa: PLC0415  # as above
+    from pcg.train import TrainingSettings  # noqa: PLC0415  # as above
+
+    now = json.loads(json.dumps(asdict(TrainingSettings.of(name))))
+    recorded = json.loads(policy_path(name).with_suffix(".run.json").read_text(encoding="utf-8"))["settings"]
+    assert {**now, **recorded, "episode": {**now["episode"], **recorded["episode"]}} == now
+    assert recorded["episode"].get("takes_back", False) == (name == "flip")
 
 
 def test_a_run_of_other_settings_is_not_continued(tmp_path: Path):

@@ -53,7 +53,9 @@ def test_the_flat_vector_has_the_size_that_policies_expect(name: str):
     assert vector.shape == (observation_size(EpisodeSettings(name, 3, 8)),)
 
 
-@pytest.mark.parametrize(("name", "size", "message"), [("wide", 5, "wide has none"), ("narrow", 4, "odd number")])
+@pytest.mark.parametrize(
+    ("name", "size", "message"), [("wide", 5, "wide and flip have none"), ("narrow", 4, "odd number")]
+)
 def test_impossible_crops_are_refused(name: str, size: int, message: str):
     """There is no centre without a position, nor in an even square."""
     with pytest.raises(ValueError, match=message):
