@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pcg.grid import DIRECTIONS, Cell, cells_of, shortest_walk
 from pcg.level import Level
 from pcg.sokoban import apply_moves, is_solved
-from pcg.solver import MAX_CELLS, Objective, Solution, SolverStatus, goal_crate_of, solve
+from pcg.solver import MAX_CELLS, Objective, Solution, SolverStatus, default_max_states, goal_crate_of, solve
 from pcg.symmetry import symmetries
 from pcg.xsb import parse_levels
 from tests.pcg import plain_solver
@@ -428,6 +428,19 @@ def test_huge_levels_are_left_undecided():
     tiles = np.zeros((1, MAX_CELLS + 1), dtype=np.uint8)
     tiles[0, :4] = [2, 3, 0, 4]
     assert solve(Level(tiles)).status is SolverStatus.LIMIT
+
+
+def test_the_largest_level_is_searched():
+    """A board of as many cells as allowed is decided."""
+    tiles = np.zeros((1, MAX_CELLS), dtype=np.uint8)
+    tiles[0, :4] = [2, 3, 0, 4]
+    assert solve(Level(tiles)).pushes == 2
+
+
+@pytest.mark.parametrize(("shape", "states"), [((10, 10), 250_000), ((10, 20), 250_000), ((50, 50), 20_000)])
+def test_large_boards_get_fewer_states(shape: Cell, states: int):
+    """Beyond 200 cells the number of states falls with the size, so that the memory stays the same."""
+    assert default_max_states(Level(np.zeros(shape, dtype=np.uint8))) == states
 
 
 def test_walks_between_pushes_are_shortest():
