@@ -52,8 +52,8 @@ is found sooner where long ways are not tried."""
 MOVES, PATIENCE = 60, 20
 """The most moves of one local search, and how many in a row without success end it."""
 
-JUMPS = 3
-"""Times that a route is searched for configurations that can be skipped, each time with other grasps."""
+FEW = 4
+"""Carries of which no jump is tried to skip some: local search leaves out one or two in less time."""
 
 SHAKES = 10
 """Attempts at shaking a route so that it stays possible."""
@@ -154,12 +154,11 @@ class Improver:
 
     def _skipping(self, route: Route) -> Route:
         """The route without configurations that it need not pass through."""
-        for _ in range(JUMPS):
-            if len(route.carries) == 1 or self._should_stop():
-                break
+        while len(route.carries) > FEW and not self._should_stop():
             other = self._motions.route(self._jumps.fewest(route))
-            if other is not None and other.cost < route.cost:
-                route = other
+            if other is None or other.cost >= route.cost:
+                break
+            route = other
         return route
 
     def _shaken(self, best: Route) -> Route | None:
