@@ -88,8 +88,8 @@ class Effort:
     switch_puzzles: Sequence[str] = SWITCH_PUZZLES
     queries: int = 40
     segments: int = 10_000
-    solves: int = 5
-    peer_solves: int = 3
+    solves: int = 20
+    peer_solves: int = 5
     time_limit: float = 2.0
     levels: int = 40
 

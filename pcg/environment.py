@@ -198,7 +198,10 @@ class SokobanEnvironment(gymnasium.Env[Any, np.int64]):
         return {name: part[0] for name, part in observation_parts(self.episodes).items()}
 
     def _info(self) -> dict[str, Any]:
-        return {name: int(numbers[0]) for name, numbers in information(self.episodes).items()}
+        # As `information`, without arrays of one number, which take a fifth of the time of a step.
+        episodes = self.episodes
+        counted = zip(_COUNTED, episodes.statistics[0, : len(Column)].tolist(), strict=True)
+        return {**dict(counted), "steps": int(episodes.steps[0]), "changes": int(episodes.changes[0])}
 
 
 for _name in REPRESENTATIONS:

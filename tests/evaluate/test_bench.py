@@ -52,7 +52,7 @@ def test_by_default_every_puzzle_is_solved():
     names = [contest.name for contest in contests(Effort(levels=1))]
     assert sum(name.startswith("puzzle, ") for name in names) == 9
     assert len(set(names)) == len(names)
-    assert Effort().queries >= 20
+    assert min(Effort().queries, Effort().solves) >= 20
 
 
 def test_medians_and_turns():
