@@ -65,17 +65,23 @@ class Route:
         return len(self.carries), self.length
 
 
-def carries_of(problem: Problem, segments: Sequence[Segment]) -> tuple[Carry, ...]:
-    """The carries of a plan."""
-    positions, names, carries = problem.initial.objects.copy(), problem.scene.object_names, []
+def route_of(problem: Problem, segments: Sequence[Segment]) -> Route:
+    """The route that a plan takes, with the plan's own motions."""
+    configuration, names = problem.initial, problem.scene.object_names
+    carries, steps, configurations = list[Carry](), list[PickPlace](), [configuration]
+    approach = [configuration.agent[np.newaxis]]
     for segment in segments:
         if segment.object is None:
+            approach.append(segment.path[1:])
             continue
         index = names.index(segment.object)
-        grasp = segment.path[0] - positions[index]
-        positions[index] = segment.path[-1] - grasp
-        carries.append(Carry(index, grasp, positions[index].copy()))
-    return tuple(carries)
+        grasp = segment.path[0] - configuration.objects[index]
+        steps.append(PickPlace(index, np.vstack(approach), segment.path, segment.path[-1] - grasp))
+        carries.append(carry_of(configuration, steps[-1]))
+        configuration = steps[-1].applied_to(configuration)
+        configurations.append(configuration)
+        approach = [configuration.agent[np.newaxis]]
+    return Route(tuple(carries), tuple(steps), tuple(configurations))
 
 
 def carry_of(configuration: Configuration, step: PickPlace) -> Carry:

@@ -25,7 +25,7 @@ import numpy as np
 
 from converter.scene import Scene
 from planner.assemble import segments_of, subgoals_of
-from planner.carries import Route, RoutePlanner, carries_of
+from planner.carries import Route, RoutePlanner, route_of
 from planner.improve_jumps import Jumps
 from planner.improve_moves import Moves
 from planner.problem import Problem
@@ -112,9 +112,9 @@ class Improver:
 
     def run(self, first: PlanResult) -> PlanResult:
         """The best plan found; `first` if none is better."""
-        best = self._motions.route(carries_of(self._problem, first.segments))
-        if best is None:
-            return first
+        own = route_of(self._problem, first.segments)
+        # A plan may pass slivers of free space, by way of a grasp there, that shortest paths miss.
+        best = self._motions.route(own.carries) or own
         result, candidate, shorter = first, best, best
         while self.counters["improve_rounds"] < self._settings.improve_rounds and not self._should_stop():
             self.counters["improve_rounds"] += 1
@@ -177,7 +177,7 @@ class Improver:
         most = len(best.carries) - kept + SPARE
         longest = best.length * self._rng.choice(SHARES_OF_LENGTH) - sum(step.length for step in best.steps[:kept])
         found = Search(problem, RESTART, self._rng, self._should_stop, max_pick_places=most, max_length=longest).run()
-        return self._motions.route((*best.carries[:kept], *carries_of(problem, found.segments)))
+        return self._motions.route((*best.carries[:kept], *route_of(problem, found.segments).carries))
 
     def _as_result(self, route: Route, first: PlanResult) -> PlanResult:
         return replace(

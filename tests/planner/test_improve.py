@@ -12,7 +12,8 @@ from converter.formats import read_scene
 from converter.plan import Segment, Status, Subgoal, plan_document
 from converter.scene import Scene
 from planner import improve as improve_module
-from planner.carries import Route, RoutePlanner, carries_of
+from planner.assemble import segments_of
+from planner.carries import Route, RoutePlanner, route_of
 from planner.improve import improve
 from planner.improve_draws import Draws
 from planner.improve_moves import Moves
@@ -114,6 +115,26 @@ def test_what_verification_refuses_does_not_count(monkeypatch: pytest.MonkeyPatc
     assert (best.segments, best.subgoals) == (first.segments, first.subgoals)
 
 
+@pytest.mark.parametrize("name", ["maze", "o-room"])
+def test_a_plan_is_a_route_with_its_own_motions(name: str):
+    """From its segments and back nothing is lost."""
+    scene = read_scene(PUZZLES / f"{name}.yaml")
+    first = first_plan(scene, 1)
+    steps = route_of(Problem(scene), first.segments).steps
+    assert plan_document(replace(first, segments=segments_of(scene, steps)).to_plan(scene, Settings(), 0)) == (
+        plan_document(first.to_plan(scene, Settings(), 0))
+    )
+
+
+def test_a_plan_that_shortest_paths_cannot_retrace_gets_better():
+    """This one of Maze goes by way of a grasp in a sliver of free space that shortest paths miss."""
+    scene = read_scene(PUZZLES / "maze.yaml")
+    first = first_plan(scene, 101)
+    problem = Problem(scene)
+    assert RoutePlanner(problem).route(route_of(problem, first.segments).carries) is None
+    assert cost(improve(scene, first, rounds(8), np.random.default_rng(0))) < cost(first)
+
+
 def test_what_is_no_valid_plan_stays():
     """Neither a plan through a wall nor a failure becomes a success."""
     blocked = replace(OPEN, walls=(wall(0.1, 0.0, 0.1, 1.0),))
@@ -142,7 +163,7 @@ def detour_route() -> tuple[Route, Moves]:
     """The detour with its motions, and moves for it."""
     problem = Problem(OPEN)
     motions = RoutePlanner(problem)
-    route = motions.route(carries_of(problem, detour().segments))
+    route = motions.route(route_of(problem, detour().segments).carries)
     assert route is not None
     return route, Moves(problem, motions, np.random.default_rng(3))
 
@@ -176,7 +197,7 @@ def test_grasps_touch_and_contacts_hold():
     """Every drawn grasp touches; some placements touch a wall or the bounds from the free side."""
     problem = Problem(room(wall(0.0, 1.0, 3.0, 0.2), objects=(body("obj", 0.0, 0.0),), agent=(-1.0, 0.0)))
     draws, space = Draws(problem, np.random.default_rng(0)), problem.object_space(problem.initial, 0)
-    carry = carries_of(Problem(OPEN), detour().segments)[1]
+    carry = route_of(Problem(OPEN), detour().segments).carries[1]
     in_contact = 0
     for _ in range(200):
         grasp = draws.grasp(problem.initial, carry).grasp
@@ -192,7 +213,7 @@ def test_grasps_touch_and_contacts_hold():
 def test_the_goal_object_ends_in_the_goal():
     """Its last placement never leaves the goal, however far it is moved."""
     problem = Problem(OPEN)
-    draws, carry = Draws(problem, np.random.default_rng(0)), carries_of(problem, detour().segments)[2]
+    draws, carry = Draws(problem, np.random.default_rng(0)), route_of(problem, detour().segments).carries[2]
     for draw in (draws.near_placement, draws.new_placement):
         for _ in range(50):
             assert OPEN.goal.contains(draw(problem.initial, carry, is_final=True).placement)
