@@ -132,7 +132,7 @@ def test_a_plan_that_shortest_paths_cannot_retrace_gets_better():
     first = first_plan(scene, 101)
     problem = Problem(scene)
     assert RoutePlanner(problem).route(route_of(problem, first.segments).carries) is None
-    assert cost(improve(scene, first, rounds(8), np.random.default_rng(0))) < cost(first)
+    assert cost(improve(scene, first, rounds(8), np.random.default_rng(1))) < cost(first)
 
 
 def test_what_is_no_valid_plan_stays():
