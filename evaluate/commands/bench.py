@@ -29,7 +29,7 @@ def run(
     ] = 10_000,
     json: Json = False,
 ) -> bool:
-    """Time motions, grasps, collision tests and solving, each beside a peer timed in the same run; about a minute.
+    """Time motions, grasps, collision tests and solving, each beside a peer timed in the same run; about two minutes.
 
     Example:  manipuzzle bench
     """
