@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from converter.polyline import path_length
-from planner.carries import Carry, RoutePlanner, carries_of
+from planner.carries import Carry, RoutePlanner, route_of
 from planner.problem import Problem
 from planner.search import Search
 from planner.settings import Settings
@@ -67,7 +67,7 @@ def test_the_carries_of_a_plan_give_it_back():
     """Grasps and placements are read off the motion; the exact ways between them are never longer."""
     problem = Problem(room(wall(0.0, -1.0, 0.2, 1.2), objects=(body("obj", -1.5, -1.5),), goal=(1.5, -1.5)))
     result = Search(problem, Settings(), np.random.default_rng(0)).run()
-    route = RoutePlanner(problem).route(carries_of(problem, result.segments))
+    route = RoutePlanner(problem).route(route_of(problem, result.segments).carries)
     assert route is not None
     assert route.length <= sum(segment.length for segment in result.segments) + 1e-9
     np.testing.assert_allclose([carry.placement for carry in route.carries], [s.position for s in result.subgoals])
