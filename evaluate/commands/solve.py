@@ -79,7 +79,7 @@ def run(
     if json:
         print_json({"results": [asdict(result) for result in results]})
     else:
-        _print(results)
+        _print(results, out)
     return all(result.verified is True for result in results)
 
 
@@ -154,11 +154,13 @@ def settings_of(preset: str, changes: Sequence[str], demonstrations: Path | None
     return changed(settings_for(preset, **options), assignments(changes, "--set"), "--set")
 
 
-def _print(results: Sequence[SolveResult]) -> None:
-    columns = ["scene", "method", "seed", "status", "time [s]", "verified", "path [m]", "pick-places", "plan"]
-    rows = [
-        (r.scene, r.method, r.seed, r.status, r.time_s, r.verified, r.path_length_m, r.pick_places, r.plan)
-        for r in results
-    ]
+def _print(results: Sequence[SolveResult], out: Path) -> None:
+    """A table that fits into 80 columns, then what all lines have in common."""
+    columns = ["scene", "status", "time [s]", "verified", "path [m]", "pick-places"]
+    rows = [(r.scene, r.status, r.time_s, r.verified, r.path_length_m, r.pick_places) for r in results]
     print_table(columns, rows)
-    print_line(f"{sum(r.verified is True for r in results)} of {counted(len(results), 'scene')} solved")
+    for r in results:
+        if r.certificate is not None:
+            print_line(f"{r.scene} is {r.status}: {r.certificate}")
+    solved = f"{sum(r.verified is True for r in results)} of {counted(len(results), 'scene')} solved"
+    print_line(f"{solved} by {results[0].method} with seed {results[0].seed}; plans in {out}")

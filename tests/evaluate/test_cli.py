@@ -18,9 +18,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
-from converter.formats import write_scene
+from converter.formats import read_scene, write_scene
 from converter.plan import Plan, read_plan, write_plan
-from converter.scene import Scene
+from converter.scene import Body, Scene
+from converter.shape import Part
 from evaluate.cli import app
 from evaluate.commands import solve as solve_command
 from evaluate.store import FILE_NAME
@@ -150,6 +151,20 @@ def test_what_is_not_solved_has_no_plan(run: Run, folder: Path):
     assert row["status"] in {"exhausted", "timeout", "infeasible"}
     assert [row[key] for key in ("plan", "verified", "path_length_m", "pick_places")] == [None] * 4
     assert list((folder / "plans").iterdir()) == []
+
+
+def test_what_is_proven_to_have_no_plan_says_why(run: Run, folder: Path):
+    """Walls around the agent: the certificate stands below the table."""
+    scene = read_scene(folder / "room.yaml")
+    x, y = scene.agent.position
+    fence = [
+        Body(f"fence {i}", np.array([x + dx, y + dy, 0.1]), 0.2, (Part.box((0.1 + abs(dy) * 2, 0.1 + abs(dx) * 2)),))
+        for i, (dx, dy) in enumerate([(0.3, 0), (-0.3, 0), (0, 0.3), (0, -0.3)])
+    ]
+    write_scene(folder / "shut.yaml", replace(scene, walls=(*scene.walls, *fence)))
+    result = run("solve", "shut.yaml", "--out", "plans")
+    assert result.exit_code == 1
+    assert "\nshut is infeasible: the agent can touch no object\n0 of 1 scene solved" in result.stdout
 
 
 def test_verify_lists_violations(run: Run):
@@ -284,9 +299,10 @@ def test_tables_are_whole_in_a_pipe(run: Run):
     result = run("solve", "room.yaml", "--out", "plans")
     heading = next(line for line in result.stdout.splitlines() if "scene" in line)
     assert re.split(r"\s{2,}", heading.strip()) == [
-        "scene", "method", "seed", "status", "time [s]", "verified", "path [m]", "pick-places", "plan",
+        "scene", "status", "time [s]", "verified", "path [m]", "pick-places",
     ]  # fmt: skip
-    assert str(Path("plans", "room-Rnd+FPR-0.json")) in result.stdout
+    assert result.stdout.endswith("\n1 of 1 scene solved by Rnd+FPR with seed 0; plans in plans\n")
+    assert max(map(len, result.stdout.splitlines())) <= 80
     assert result.stderr == ""
 
 
