@@ -5,7 +5,9 @@ number of pushes, `random_levels` makes new ones and `write_level_set` keeps the
 needs NumPy and Pydantic only.
 """
 
-from pcg.compile_cache import provide_compile_cache
+from pathlib import Path
+
+from pcg.compile_cache import forget_stale_code, provide_compile_cache
 from pcg.dependency import has_dependency
 from pcg.errors import InputError
 from pcg.frozen import FrozenTiles, read_frozen
@@ -71,3 +73,4 @@ __all__ = [
 ]
 
 provide_compile_cache()
+forget_stale_code(Path(__file__).parent)

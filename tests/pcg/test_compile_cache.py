@@ -9,7 +9,7 @@ from typing import NoReturn
 import pytest
 
 from pcg import compile_cache
-from pcg.compile_cache import VARIABLE, provide_compile_cache
+from pcg.compile_cache import RECORD, VARIABLE, forget_stale_code, provide_compile_cache
 
 
 @pytest.fixture(autouse=True)
@@ -86,3 +86,43 @@ def test_folders_may_have_to_be_made(tmp_path: Path, name: str, *, writable: boo
     """A folder can be written to if it, or the nearest one above it that exists, can."""
     (tmp_path / "file").write_text("")
     assert compile_cache._can_write(tmp_path / name) is writable  # noqa: SLF001  # replaced in the other tests
+
+
+def test_compiled_code_goes_when_a_kernel_changes(tmp_path: Path):
+    """It stays as long as the kernels do, whatever happens to other modules, and goes as a whole with any of them."""
+    (tmp_path / "kernel.py").write_text("from numba import njit")
+    (tmp_path / "other.py").write_text("")
+    forget_stale_code(tmp_path)
+    compiled = [tmp_path / "__pycache__" / name for name in ("kernel.f.nbi", "kernel.f.1.nbc", "caller.g.nbi")]
+
+    def compile_all() -> None:
+        for path in compiled:
+            path.write_text("")
+
+    compile_all()
+    (tmp_path / "other.py").write_text("changed")
+    forget_stale_code(tmp_path)
+    assert all(path.exists() for path in compiled)
+    (tmp_path / "kernel.py").write_text("from numba import njit, prange")
+    forget_stale_code(tmp_path)
+    assert not any(path.exists() for path in compiled)
+    compile_all()
+    forget_stale_code(tmp_path)
+    assert all(path.exists() for path in compiled)
+
+
+def test_compiled_code_of_unknown_origin_goes(tmp_path: Path):
+    """Without a record nothing says that it is up to date."""
+    compiled = tmp_path / "__pycache__" / "kernel.f.nbi"
+    compiled.parent.mkdir()
+    compiled.write_text("")
+    forget_stale_code(tmp_path)
+    assert not compiled.exists()
+    assert (compiled.parent / RECORD).exists()
+
+
+def test_stale_code_that_cannot_be_removed_stays(tmp_path: Path):
+    """An installation whose cache folder cannot be made or written to is used as it is."""
+    (tmp_path / "__pycache__").write_text("no folder")
+    forget_stale_code(tmp_path)
+    assert (tmp_path / "__pycache__").read_text() == "no folder"
