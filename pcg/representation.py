@@ -128,14 +128,12 @@ class Turtle:
         return cells, self._written[actions]
 
 
-class Wide:
-    """Writes anywhere."""
+class _Anywhere:
+    """What is alike without a position: nothing is drawn, and the agent is nowhere."""
 
     has_position = False
-    sees_solution = False
 
-    def __init__(self, shape: Cell, n: int) -> None:
-        self.n_actions = shape[0] * shape[1] * N_TILES
+    def __init__(self, n: int) -> None:
         self._nowhere = np.zeros(n, dtype=np.int64)
 
     def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
@@ -145,6 +143,16 @@ class Wide:
     def positions(self) -> IntArray:
         """(n,) zeros."""
         return self._nowhere
+
+
+class Wide(_Anywhere):
+    """Writes anywhere."""
+
+    sees_solution = False
+
+    def __init__(self, shape: Cell, n: int) -> None:
+        super().__init__(n)
+        self.n_actions = shape[0] * shape[1] * N_TILES
 
     def step(self, actions: IntArray, maps: TileArray) -> tuple[IntArray, IntArray]:
         """Writes the tile."""
@@ -156,24 +164,15 @@ _FLIPPED: Final = np.array([Tile.WALL, Tile.FLOOR, *[KEEP] * (len(Tile) - 2)])
 """What `Flip` writes, by the tile that is there."""
 
 
-class Flip:
+class Flip(_Anywhere):
     """Builds or removes a wall anywhere."""
 
-    has_position = False
     sees_solution = True
 
     def __init__(self, shape: Cell, n: int) -> None:
+        super().__init__(n)
         self.n_actions = shape[0] * shape[1]
         self._episodes = np.arange(n)
-        self._nowhere = np.zeros(n, dtype=np.int64)
-
-    def begin(self, rng: np.random.Generator, episodes: IntArray) -> None:
-        """Nothing is drawn."""
-        del rng, episodes
-
-    def positions(self) -> IntArray:
-        """(n,) zeros."""
-        return self._nowhere
 
     def step(self, actions: IntArray, maps: TileArray) -> tuple[IntArray, IntArray]:
         """Writes floor in place of a wall, and a wall in place of floor."""

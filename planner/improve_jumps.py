@@ -69,7 +69,7 @@ class Jumps:
                 for j in range(i + 1, n + 1):
                     ways[j] += [way.followed_by(step) for step in self._jumps(solver, way.configuration, route, j)]
         complete = [way for found in ways for way in found if self._problem.at_goal(way.configuration)]
-        return min(complete, key=lambda way: way.cost, default=Way(route.configurations[0], route.carries)).carries
+        return min(complete, key=lambda way: way.cost).carries if complete else route.carries
 
     def _apart(self, ways: list[Way]) -> list[Way]:
         """The best of some ways to one configuration, and the best after which the agent is shut off from there."""
